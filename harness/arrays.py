@@ -1,0 +1,14 @@
+"""Names for the kinds of array that signatures speak of; their shapes and units stand in the docstrings."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+Ints: TypeAlias = NDArray[np.int64]
+Flags: TypeAlias = NDArray[np.bool_]
+Pairs: TypeAlias = NDArray[np.int64]
+"""(k, 2), body numbers i < j, sorted."""
