@@ -1,0 +1,108 @@
+"""Print experiments, backends, algorithms and metrics with their units."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+FOLDER = "experiments"
+ALGORITHMS = {
+    "brute-force": "every pair, every frame",
+    "grid": "pairs from uniform or hierarchical cells sized to the bodies",
+    "tree": "pairs from a dynamic tree of axis-aligned boxes",
+    "native": "the backend's own broad phase",
+    "predictive": "from event to event: the next collision of every body is computed, not stepped to",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command takes."""
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="one JSON document on standard output")
+    form.add_argument("--schema", action="store_true", help="the JSON Schema of experiment files, for editors")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print what there is to choose from."""
+    import json
+
+    if arguments.schema:
+        from harness.experiment.json_schema import json_schema
+
+        print(json.dumps(json_schema(), indent=2))
+        return 0
+    listing = {
+        "experiments": _experiments(),
+        "backends": _backends(),
+        "algorithms": [{"name": name, "description": text} for name, text in ALGORITHMS.items()],
+        "metrics": _metrics(),
+    }
+    if arguments.json:
+        print(json.dumps(listing, indent=2))
+        return 0
+    _print("Experiments", [(row["name"], _experiment_line(row)) for row in listing["experiments"]])
+    _print(
+        "Backends",
+        [(row["name"], f"missing: {row['missing']}" if row["missing"] else "installed") for row in listing["backends"]],
+    )
+    _print("Algorithms", [(row["name"], row["description"]) for row in listing["algorithms"]])
+    _print("Metrics", [(row["name"], f"{row['unit']:4}  {row['description']}") for row in listing["metrics"]])
+    return 0
+
+
+def _experiments() -> list[dict[str, Any]]:
+    """Every experiment of the folder; of one that is wrong, how many problems it has."""
+    from pathlib import Path
+
+    from harness.errors import InputError
+    from harness.experiment.load import find_experiments, load, name_of
+
+    if not Path(FOLDER).is_dir():
+        return []
+    try:
+        paths = find_experiments([FOLDER])
+    except InputError:
+        return []
+    rows: list[dict[str, Any]] = []
+    for path in paths:
+        row: dict[str, Any] = {"name": name_of(path), "path": str(path)}
+        try:
+            experiment = load(path)
+        except InputError as error:
+            row |= {"title": None, "points": None, "runs": None, "tier": None, "problems": len(error.problems)}
+        else:
+            points, tier = len(experiment.points), experiment.measure.tier
+            row |= {"title": experiment.title, "points": points, "runs": experiment.runs, "tier": tier, "problems": 0}
+        rows.append(row)
+    return rows
+
+
+def _experiment_line(row: dict[str, Any]) -> str:
+    if row["problems"]:
+        return f"wrong: `harness validate {row['path']}` says how"
+    long = ", long" if row["tier"] == "long" else ""
+    return f"{row['title']} ({row['runs']} run{'s' * (row['runs'] != 1)}{long})"
+
+
+def _backends() -> list[dict[str, Any]]:
+    from harness.backends.registry import available
+
+    return [{"name": name, "missing": _one_line(why)} for name, why in available().items()]
+
+
+def _one_line(text: str | None) -> str | None:
+    return None if text is None else " ".join(text.split())
+
+
+def _metrics() -> list[dict[str, Any]]:
+    from harness.measure.metrics import METRICS
+
+    return [{"name": name, "unit": metric.unit, "description": metric.description} for name, metric in METRICS.items()]
+
+
+def _print(heading: str, rows: list[tuple[str, str]]) -> None:
+    print(heading)
+    width = max((len(name) for name, _ in rows), default=0)
+    for name, text in rows or [("none", "")]:
+        print(f"  {name:{width}}  {text}".rstrip())
+    print()

@@ -1,0 +1,49 @@
+"""Write a commented experiment to start from."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FOLDER = "experiments"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command takes."""
+    parser.add_argument("name", metavar="NAME", help=f"for {FOLDER}/NAME.yaml; or a path that ends in .yaml")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the file, never over another, and say what to do next."""
+    from pathlib import Path
+
+    from harness.errors import InputError, Problem
+
+    name: str = arguments.name
+    path = Path(name) if name.endswith(".yaml") else Path(FOLDER) / f"{name}.yaml"
+    beside = not name.endswith(".yaml") and (Path(name).is_absolute() or ".." in Path(name).parts)
+    if beside or not name.isprintable() or not name.strip("/."):
+        raise InputError(f'"{name}" is no name for a file in {FOLDER}/; a path must end in .yaml')
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("x", encoding="utf-8") as file:
+            file.write(_text(path))
+    except FileExistsError:
+        raise InputError([Problem("this exists already, and is left as it is", str(path))]) from None
+    except (OSError, ValueError) as error:
+        raise InputError([Problem(f"this cannot be written: {error}", str(path))]) from None
+    print(f"wrote {path}")
+    print(f"check it with `harness validate {path}`, run it with `harness sweep {path}`, then `harness report`")
+    return 0
+
+
+def _text(path: Path) -> str:
+    import json
+    from importlib.resources import files
+
+    template = (files("harness.experiment") / "template.yaml").read_text(encoding="utf-8")
+    title = path.stem.replace("-", " ").replace("_", " ").capitalize()
+    return template.format(title=json.dumps(title, ensure_ascii=False), path=path)

@@ -1,0 +1,142 @@
+"""What every command that reads experiments does first: load them, open their meshes, and say all that is wrong."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from harness.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from harness.experiment.experiment import Experiment
+    from harness.scene.mesh import Mesh
+
+
+class Prepared(NamedTuple):
+    """Experiments without a fault, their meshes by file, and the faults of the others."""
+
+    experiments: list[Experiment]
+    meshes: dict[Path, Mesh]
+    problems: list[Problem]
+
+
+def add_override_argument(parser: argparse.ArgumentParser) -> None:
+    """Give a command `--set leaf=value`."""
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="LEAF=VALUE",
+        help="a leaf in the place of the file's, such as count=50, dt=1/120 or count=[5, 10]; can be given again",
+    )
+
+
+def overrides_of(arguments: argparse.Namespace) -> dict[str, str]:
+    """The leaves that `--set` gives, each with its text."""
+    overrides: dict[str, str] = {}
+    problems = []
+    for text in arguments.overrides:
+        leaf, equals, value = text.partition("=")
+        if equals and leaf.strip():
+            overrides[leaf.strip()] = value
+        else:
+            problems.append(Problem(f"--set {text}: must be LEAF=VALUE, such as count=50"))
+    if problems:
+        raise InputError(problems)
+    return overrides
+
+
+def prepare(
+    paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object]
+) -> tuple[list[Experiment], dict[Path, Mesh]]:
+    """Load every experiment that the paths name, and open all of their meshes in one child process.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong with any of them.
+    """
+    experiments, meshes, problems = examine(paths, overrides)
+    if problems:
+        raise InputError(problems)
+    return experiments, meshes
+
+
+def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object]) -> Prepared:
+    """As `prepare`, but returns what is wrong beside what is right.
+
+    Raises
+    ------
+    InputError
+        If a path names no experiment.
+    """
+    from harness.experiment.load import find_experiments, load
+
+    loaded: list[Experiment] = []
+    problems: list[Problem] = []
+    for path in find_experiments(paths):
+        try:
+            loaded.append(load(path, overrides))
+        except InputError as error:
+            problems += error.problems
+    meshes, broken = _open_meshes(loaded)
+    sound = []
+    for experiment in loaded:
+        found = [*_names(experiment), *_mesh_problems(experiment, broken), *_namesakes(experiment, loaded)]
+        problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
+        if not found:
+            sound.append(experiment)
+    return Prepared(sound, meshes, list(dict.fromkeys(problems)))
+
+
+def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], dict[Path, str]]:
+    paths = list(dict.fromkeys(path for experiment in experiments for path in experiment.mesh_paths.values()))
+    if not paths:
+        return {}, {}
+    from harness.scene.mesh_child import open_meshes
+
+    opened = open_meshes(paths)
+    meshes = {path: mesh for path, mesh in opened.items() if not isinstance(mesh, str)}
+    return meshes, {path: message for path, message in opened.items() if isinstance(message, str)}
+
+
+def _mesh_problems(experiment: Experiment, broken: Mapping[Path, str]) -> Iterator[Problem]:
+    for reference, path in experiment.mesh_paths.items():
+        if path in broken:
+            yield experiment.leaf_problem("mesh", reference, broken[path])
+
+
+def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Iterator[Problem]:
+    """Results are kept under the names of experiments, so names must differ."""
+    for other in experiments:
+        if other is experiment:
+            return
+        if other.name == experiment.name:
+            message = f'this is called "{experiment.name}" as {other.path} is; results are kept by name: rename one'
+            yield Problem(message, str(experiment.path))
+
+
+def _names(experiment: Experiment) -> Iterator[Problem]:
+    """Names that only other rooms know: of metrics and of backends."""
+    from harness.backends.registry import names
+    from harness.experiment.messages import listed, near, shown
+    from harness.measure.metrics import METRICS
+
+    metrics: list[tuple[tuple[str | int, ...], str]] = []
+    for section, rows in (("expect", experiment.expect), ("claims", experiment.claims)):
+        metrics += [((section, place, "metric"), row.metric) for place, row in enumerate(rows)]
+    if experiment.report is not None:
+        metrics += [(("report", "y", place), name) for place, name in enumerate(experiment.report.y)]
+    for path, name in metrics:
+        if name not in METRICS:
+            yield experiment.problem(path, f"unknown metric {shown(name)}{near(name, METRICS)}")
+    backends = names()
+    for name in dict.fromkeys(point.engine.backend for point in experiment.points):
+        if name not in backends:
+            hint = near(name, backends) or f"; there are {listed(backends)}"
+            yield experiment.leaf_problem("backend", name, f"unknown backend {shown(name)}{hint}")

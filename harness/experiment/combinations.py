@@ -1,0 +1,106 @@
+"""Which values of leaves cannot stand together, and why. Every such rule is here, once.
+
+A rule is a function of leaf values (all leaves of the parts it looks at, defaults filled in) that returns a `Conflict`
+or None. Add a rule by writing it and naming it in one of the tuples at the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from harness.experiment.messages import listed
+
+Values = Mapping[str, Any]
+
+# What a backend can be asked for. A backend that is not named here brings its own detection, whole.
+ALGORITHMS = {"fcl": ("brute-force", "grid", "tree", "predictive")}
+OTHER_ALGORITHMS = ("native",)
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Values that cannot stand together.
+
+    Parameters
+    ----------
+    message : what is wrong; `{}` stands for the values of the last leaf
+    leaves : whose values collide, the one to mend last
+    excludable : whether leaving the combination out of a sweep is a way to mend it
+    """
+
+    message: str
+    leaves: tuple[str, ...]
+    excludable: bool = False
+
+
+Rule = Callable[[Values], Conflict | None]
+
+
+def conflicts(values: Values, rules: Iterable[Rule]) -> Iterator[Conflict]:
+    """All conflicts among these leaf values; rules that look at a leaf that is not among them are passed over."""
+    for rule in rules:
+        try:
+            conflict = rule(values)
+        except KeyError:  # it looks at a leaf whose value is wrong already
+            continue
+        if conflict is not None:
+            yield conflict
+
+
+def has_count_or_bodies(values: Values) -> Conflict | None:
+    """Bodies are counted, or each is given."""
+    if values["count"] is None and values["bodies"] is None:
+        return Conflict("a scene needs count (random bodies) or bodies (each of them given)", ("bodies", "count"))
+    if values["count"] is not None and values["bodies"] is not None:
+        return Conflict("count and bodies exclude each other; give one of them", ("bodies", "count"))
+    return None
+
+
+def has_one_box(values: Values) -> Conflict | None:
+    """The box has given sides, or sides that follow from the bodies' size."""
+    if values["box"] is None and values["box_ratio"] is None:
+        return Conflict("a scene needs box ([x, y, z] in m) or box_ratio ((mean size / side)²)", ("box", "box_ratio"))
+    if values["box"] is not None and values["box_ratio"] is not None:
+        return Conflict("box and box_ratio exclude each other; give one of them", ("box_ratio", "box"))
+    return None
+
+
+def has_a_mesh(values: Values) -> Conflict | None:
+    """Only spheres need no mesh."""
+    if values["mesh"] is None and values["shape"] != "sphere":
+        return Conflict(f"shape {values['shape']} needs a mesh; only shape sphere does without", ("shape", "mesh"))
+    return None
+
+
+def restitution_has_an_effect(values: Values) -> Conflict | None:
+    """Only the elastic response has a restitution."""
+    if values["restitution"] != 1 and values["response"] != "elastic":
+        message = (
+            f"restitution would have no effect with response {values['response']}, only with elastic; it must be 1"
+        )
+        return Conflict(f"{message}, not {{}}", ("response", "restitution"), excludable=True)
+    return None
+
+
+def frames_can_be_counted(values: Values) -> Conflict | None:
+    """The number of a frame, and so its time, is exact in a float."""
+    if values["duration"] / values["dt"] >= 2**53:
+        return Conflict("a duration of more than 2^53 frames of dt cannot be counted; dt is {}", ("duration", "dt"))
+    return None
+
+
+def backend_has_the_algorithm(values: Values) -> Conflict | None:
+    """fcl answers single questions, so that any algorithm can ask them; other backends bring their own detection."""
+    backend, algorithms = values["backend"], ALGORITHMS.get(values["backend"], OTHER_ALGORITHMS)
+    if values["algorithm"] not in algorithms:
+        message = f"backend {backend} has no algorithm {{}}, only {listed(algorithms)}"
+        return Conflict(message, ("backend", "algorithm"), excludable=True)
+    return None
+
+
+SCENE: tuple[Rule, ...] = (has_count_or_bodies, has_one_box, has_a_mesh)
+MOTION: tuple[Rule, ...] = (restitution_has_an_effect, frames_can_be_counted)
+ENGINE: tuple[Rule, ...] = (backend_has_the_algorithm,)
+POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE)

@@ -1,0 +1,260 @@
+"""Loads experiments: every check that needs no mesh, and all that is wrong with a file at once."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Literal, TypeVar
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
+from harness.errors import InputError, Problem
+from harness.experiment.complaints import Complaints, Origin, Override
+from harness.experiment.criterion import Criterion
+from harness.experiment.declaration import check, declare, override
+from harness.experiment.document import KEY, LARGEST_FILE, read_document, read_value
+from harness.experiment.expand import Expansion, expand
+from harness.experiment.experiment import Experiment
+from harness.experiment.leaves import LEAVES, SECTIONS, unknown_key
+from harness.experiment.mesh_location import locate_mesh
+from harness.experiment.messages import near, shown
+from harness.experiment.presentation import Published, ReportSpec
+from harness.experiment.schema import MOST_RUNS, MeasureSpec, Text
+
+FOLDER = "experiments"
+KEYS = (
+    *("title", "question", *SECTIONS, "sweep", "zip", "exclude", "include"),
+    *("measure", "expect", "claims", "published", "report"),
+)
+# Leaf -> where it was set, and to what.
+Settings = dict[str, tuple[Override, Any]]
+_NOTHING: Mapping[str, object] = MappingProxyType({})
+_TEXT: TypeAdapter[str] = TypeAdapter(Text)
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def load(path: str | os.PathLike[str], set: Mapping[str, object] = _NOTHING) -> Experiment:
+    """Load an experiment.
+
+    Parameters
+    ----------
+    path : of its YAML file
+    set : leaf -> value, over what the file says; a value that is text is read as YAML
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong with it.
+    """
+    return load_text(_read(Path(path)), path, set)
+
+
+def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str, object] = _NOTHING) -> Experiment:
+    """As `load`, from text; `path` names it in messages, and meshes are looked for beside it."""
+    path = Path(path)
+    document = read_document(text, str(path))
+    file: dict[str, Any] = document.value
+    complaints = Complaints(document)
+    for key in file:
+        if key not in KEYS:
+            complaints.add((key, KEY), unknown_key(key, KEYS))
+    settings = _settings(set, complaints)
+    declaration = declare(file, complaints)
+    for leaf, (setting, value) in settings.items():
+        if leaf in LEAVES:
+            override(declaration, setting, value, complaints)
+    check(declaration, complaints)
+
+    title = _text(file, "title", settings, complaints)
+    if title is None and file.get("title") is None:
+        complaints.add((), '"title" is missing')
+    question = _text(file, "question", settings, complaints)
+    measure = _measure(file, settings, complaints)
+    expect = _criteria(file, "expect", complaints)
+    claims = _criteria(file, "claims", complaints)
+    published = _section(Published, file, "published", complaints)
+    report = _section(ReportSpec, file, "report", complaints)
+    expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), complaints)
+    meshes = _locate_meshes(expansion, path.parent, complaints)
+    complaints.raise_any()
+    assert title is not None
+    assert measure is not None
+    return Experiment(
+        path=path,
+        name=name_of(path),
+        title=title,
+        question=question,
+        points=expansion.points,
+        swept=expansion.swept,
+        measure=measure,
+        expect=expect,
+        claims=claims,
+        published=published,
+        report=report,
+        mesh_paths=meshes,
+        source=text if isinstance(text, str) else text.decode("utf-8-sig"),
+        overrides=dict(set),
+        document=document,
+        origins=expansion.origins,
+    )
+
+
+def name_of(path: Path) -> str:
+    """The name of an experiment: its path below the nearest folder experiments/, else its file's, without .yaml."""
+    absolute = Path(os.path.abspath(path))
+    *folders, file = absolute.parts
+    below = folders[len(folders) - folders[::-1].index(FOLDER) :] if FOLDER in folders else []
+    return "/".join([*below, file.removesuffix(".yaml").removesuffix(".yml")])
+
+
+def find_experiments(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
+    """The experiment files that paths name: files as they are, folders with every *.yaml below them, sorted.
+
+    Raises
+    ------
+    InputError
+        For paths that are not there and folders without an experiment, all of them at once.
+    """
+    found: dict[Path, Path] = {}
+    problems: list[Problem] = []
+    for path in map(Path, paths):
+        kind = _kind(path)
+        if kind == "folder":
+            files = sorted(file for file in path.rglob("*.yaml") if file.is_file())
+            if not files:
+                problems.append(Problem("there is no experiment (*.yaml) in this folder", str(path)))
+        elif kind is not None:
+            files = [path]
+        else:
+            files = []
+            problems.append(Problem(_no_file(path), str(path)))
+        for file in files:
+            found.setdefault(file.resolve(), file)
+    if problems:
+        raise InputError(problems)
+    return list(found.values())
+
+
+def _no_file(path: Path) -> str:
+    guesses = (path.with_name(path.name + ".yaml"), FOLDER / path, FOLDER / path.with_name(path.name + ".yaml"))
+    for guess in guesses if path.name else ():
+        if _kind(guess) == "file":
+            return f'there is no such file or folder; did you mean "{guess}"?'
+    siblings = [file.name for file in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
+    return f"there is no such file or folder{near(path.name, siblings)}"
+
+
+def _kind(path: Path) -> Literal["file", "folder", "other"] | None:
+    """What a path names; nothing, if it cannot be looked at."""
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return None
+    return "folder" if stat.S_ISDIR(mode) else "file" if stat.S_ISREG(mode) else "other"
+
+
+def _read(path: Path) -> bytes:
+    file = str(path)
+    kind = _kind(path)
+    if kind is None:
+        raise InputError([Problem(_no_file(path), file)])
+    if kind == "folder":
+        raise InputError([Problem("this is a folder; name a file", file)])
+    if kind != "file":
+        raise InputError([Problem("this is not a file", file)])
+    try:
+        with path.open("rb") as stream:
+            return stream.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise InputError([Problem(f"the file cannot be read: {error.strerror}", file)]) from None
+
+
+def _settings(given: Mapping[str, object], complaints: Complaints) -> Settings:
+    """The overrides with their values, text read as YAML; title and question are text as they stand."""
+    settings: Settings = {}
+    settable = ("title", "question", *LEAVES, *MeasureSpec.model_fields)
+    for leaf, value in given.items():
+        setting = Override(leaf, value)
+        if leaf not in settable:
+            unknown = f"unknown leaf {shown(leaf)}{near(leaf, settable)}"
+            complaints.add(setting, f"{shown(leaf)} cannot be set; only leaves can" if leaf in KEYS else unknown)
+        elif leaf in ("title", "question") or not isinstance(value, str):
+            settings[leaf] = (setting, value)
+        else:
+            try:
+                settings[leaf] = (setting, read_value(value))
+            except InputError as error:
+                for problem in error.problems:
+                    complaints.add(setting, problem.message)
+    return settings
+
+
+def _text(file: Mapping[str, Any], key: str, settings: Settings, complaints: Complaints) -> str | None:
+    origin: Origin
+    origin, value = settings.get(key, ((key,), file.get(key)))
+    if value is None:
+        return None
+    try:
+        return _TEXT.validate_python(value)
+    except ValidationError as error:
+        complaints.add_errors(origin, error)
+        return None
+
+
+def _measure(file: Mapping[str, Any], settings: Settings, complaints: Complaints) -> MeasureSpec | None:
+    written = file.get("measure")
+    if written is not None and not isinstance(written, dict):
+        return _section(MeasureSpec, file, "measure", complaints)
+    set_here = {name: setting for name, setting in settings.items() if name in MeasureSpec.model_fields}
+    values = {**(written or {}), **{name: value for name, (_, value) in set_here.items()}}
+    try:
+        return MeasureSpec.model_validate(values)
+    except ValidationError as error:
+        for found in error.errors(include_url=False):
+            name = str(found["loc"][0])
+            origin: Origin = set_here[name][0] if name in set_here else ("measure",)
+            complaints.add_error(origin, found, MeasureSpec)
+        return None
+
+
+def _section(model: type[_Model], file: Mapping[str, Any], key: str, complaints: Complaints) -> _Model | None:
+    if file.get(key) is None:
+        return None
+    try:
+        return model.model_validate(file[key])
+    except ValidationError as error:
+        complaints.add_errors((key,), error, model)
+        return None
+
+
+def _criteria(file: Mapping[str, Any], key: str, complaints: Complaints) -> tuple[Criterion, ...]:
+    rows = file.get(key)
+    if rows is None:
+        return ()
+    if not isinstance(rows, list):
+        complaints.add((key,), f"must be a list of rows, such as [{{metric: escaped, equals: 0}}], not {shown(rows)}")
+        return ()
+    found = []
+    for place, row in enumerate(rows):
+        try:
+            found.append(Criterion.model_validate(row))
+        except ValidationError as error:
+            complaints.add_errors((key, place), error, Criterion)
+    return tuple(found)
+
+
+def _locate_meshes(expansion: Expansion, folder: Path, complaints: Complaints) -> dict[str, Path]:
+    """The files of all meshes that points refer to."""
+    located: dict[str, Path] = {}
+    for (leaf, text), origin in expansion.origins.items():
+        reference = json.loads(text) if leaf == "mesh" else None
+        if reference is not None:
+            try:
+                located[reference] = locate_mesh(reference, folder)
+            except InputError as error:
+                complaints.add(origin, str(error))
+    return located

@@ -1,0 +1,92 @@
+"""Where a mesh that an experiment names is found, and where it may not be.
+
+An experiment is a stranger's file: what it names must lie in its own folder, in a folder of meshes, or among the data
+of an installed package, symbolic links followed.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+from harness.errors import InputError
+from harness.experiment.messages import near, shown
+
+PACKAGE = "package:"
+SUFFIXES = (".ply", ".obj", ".stl", ".off", ".glb", ".gltf", ".dae", ".3mf")
+_MOST_LISTED = 1000
+
+
+def locate_mesh(reference: str, beside: Path) -> Path:
+    """The file that a reference means: in the folder `beside`, in ./meshes, or in meshes/ beside the harness package.
+
+    Parameters
+    ----------
+    reference : a path, or `package:NAME/PATH` for a file of an installed package, which is not imported
+    beside : the folder of the experiment
+
+    Returns
+    -------
+    Path
+        Absolute, symbolic links followed.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not where meshes may be.
+    """
+    package, relative = None, reference
+    if reference.startswith(PACKAGE):
+        package, _, relative = reference.removeprefix(PACKAGE).partition("/")
+        roots = [_package_folder(package, reference)]
+    else:
+        roots = [beside, Path("meshes"), Path(__file__).resolve().parents[2] / "meshes"]
+    allowed = [root.resolve() for root in roots]
+    outside = False
+    for root in roots:
+        found = _file(root, relative)
+        if found is not None and any(found.is_relative_to(folder) for folder in allowed):
+            return found
+        outside |= found is not None
+    if outside:
+        where = f"the package {package}" if package else "the experiment's folder and the folders of meshes"
+        raise InputError(f"the mesh {shown(reference)} lies outside of {where}")
+    prefix = f"{PACKAGE}{package}/" if package else ""
+    hint = near(reference, (prefix + name for root in roots for name in _meshes_in(root)))
+    where = f"in the package {package}" if package else "beside the experiment or in meshes/"
+    raise InputError(f"there is no mesh {shown(reference)} {where}{hint}")
+
+
+def _package_folder(name: str, reference: str) -> Path:
+    if not name.isidentifier():
+        raise InputError(f"{shown(reference)} must be {PACKAGE}NAME/PATH, with the name of a package to import")
+    try:
+        # Of a name without dots this looks for the package and runs nothing of it.
+        found = importlib.util.find_spec(name)
+    except (ImportError, ValueError):
+        found = None
+    if found is None:
+        raise InputError(f"the package {shown(name)} is not installed")
+    # A folder without code is a package to Python too, any folder where the program was started among them.
+    if found.origin is None or not found.submodule_search_locations:
+        raise InputError(f"{shown(name)} is not a package that could hold data")
+    return Path(found.origin).parent
+
+
+def _file(root: Path, relative: str) -> Path | None:
+    try:
+        path = root / relative
+        return path.resolve() if path.is_file() else None
+    except (OSError, ValueError, RuntimeError):  # a name too long, with a zero in it, or links that go round in circles
+        return None
+
+
+def _meshes_in(root: Path) -> Iterator[str]:
+    try:
+        for path in islice(root.iterdir(), _MOST_LISTED):
+            if path.suffix.lower() in SUFFIXES:
+                yield path.name
+    except OSError:
+        return

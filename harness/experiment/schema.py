@@ -1,0 +1,138 @@
+"""What can be said of the scene, its motion, the engine and the measuring: every key, its unit, range and default."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from harness.experiment.combinations import ENGINE, MOTION, SCENE, Rule, conflicts
+from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
+from harness.experiment.number import Bytes, Number, Switch, Vector, Whole, holding, wrong
+
+Algorithm = Literal["brute-force", "grid", "tree", "native", "predictive"]
+Shape = Literal["sphere", "hull", "mesh"]
+Response = Literal["reflect", "elastic", "none"]
+Text = Annotated[str, Field(min_length=1)]
+Positive = Annotated[Number, Field(gt=0)]
+NotNegative = Annotated[Number, Field(ge=0)]
+
+# Absurd counts are accepted here and refused where their memory is known; these bounds only keep them in an integer.
+MOST_BODIES = 10**9
+LARGEST_SEED = 2**63 - 1
+MOST_RUNS = 10**9
+
+
+class Declared(BaseModel):
+    """The manner of all models: nothing changes, nothing unknown is passed over."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
+
+
+def refuse_conflicts(model: BaseModel, rules: tuple[Rule, ...]) -> None:
+    """Hold a model against the rules of combination; a model made in Python meets them too."""
+    values = {name: getattr(model, name) for name in type(model).model_fields}
+    for conflict in conflicts(values, rules):
+        raise wrong(conflict.message.replace("{}", str(values[conflict.leaves[-1]])))
+
+
+def _turned(quaternion: tuple[float, ...]) -> tuple[float, ...]:
+    if not any(quaternion):
+        raise wrong("must be a rotation; a quaternion of zeros is none")
+    return quaternion
+
+
+class BodySpec(Declared):
+    """One body, given in full."""
+
+    position: Vector = Field(description="centre [x, y, z], m")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="[x, y, z], m/s")
+    spin: Vector = Field((0.0, 0.0, 0.0), description="angular velocity [x, y, z] in the world frame, rad/s")
+    size: Positive = Field(1.0, description="diameter of the bounding sphere, m")
+    mass: Positive | None = Field(None, description="kg; size³ if left out")
+    orientation: Annotated[
+        tuple[Number, Number, Number, Number], holding(4, "4 numbers (w, x, y, z)"), AfterValidator(_turned)
+    ] = Field((1.0, 0.0, 0.0, 0.0), description="quaternion [w, x, y, z], normalised on use")
+
+
+class SceneSpec(Declared):
+    """What flies, in which box."""
+
+    mesh: Text | None = Field(
+        None,
+        description="file beside the experiment or in meshes/, or package:NAME/FILE; needed unless shape is sphere",
+    )
+    shape: Shape = Field("mesh", description="what the narrow phase sees: bounding sphere, hull or mesh")
+    count: Annotated[Whole, Field(ge=0, le=MOST_BODIES)] | None = Field(None, description="number of random bodies")
+    bodies: Annotated[tuple[BodySpec, ...], Field(min_length=1)] | None = Field(
+        None, description="the bodies one by one, instead of count"
+    )
+    size: PositiveDistribution = Field(Distribution(1.0), description="diameter of the bounding sphere, m")
+    box: Annotated[tuple[Positive, Positive, Positive], holding(3, "3 sides")] | None = Field(
+        None, description="sides [x, y, z], m, centred at the origin"
+    )
+    box_ratio: Positive | None = Field(None, description="(mean size / side of a cubic box)², instead of box")
+    speed: NonNegativeDistribution = Field(
+        Distribution.model_validate({"uniform": [0.5, 1.5]}), description="m/s, in a direction uniform on the sphere"
+    )
+    spin: NonNegativeDistribution = Field(
+        Distribution.model_validate({"uniform": [0.0, 3.0]}), description="rad/s, about an axis uniform on the sphere"
+    )
+    overlap: Literal["reject", "allow"] = Field("reject", description="whether random bodies may overlap at first")
+    seed: Annotated[Whole, Field(ge=0, le=LARGEST_SEED)] = Field(259, description="of all random choices in the scene")
+
+    @model_validator(mode="after")
+    def _possible(self) -> SceneSpec:
+        refuse_conflicts(self, SCENE)
+        return self
+
+
+class MotionSpec(Declared):
+    """How the bodies move."""
+
+    duration: NotNegative = Field(10.0, description="simulated time, s")
+    dt: Positive = Field(1 / 60, description="time from frame to frame, s; for predictive, from sample to sample")
+    response: Response = Field("reflect", description="a hit flips velocities, passes impulse, does nothing")
+    restitution: Annotated[Number, Field(ge=0, le=1)] = Field(1.0, description="of elastic hits, 0 to 1")
+
+    @model_validator(mode="after")
+    def _possible(self) -> MotionSpec:
+        refuse_conflicts(self, MOTION)
+        return self
+
+    @property
+    def frames(self) -> int:
+        """The number of frames after the start: frame k is at k·dt, k = 1 … frames."""
+        return round(self.duration / self.dt)
+
+
+class EngineSpec(Declared):
+    """How hits are found."""
+
+    backend: Text = Field("fcl", description="library that answers geometry questions; see `harness list`")
+    algorithm: Algorithm = Field("brute-force", description="which questions are asked, and when; see `harness list`")
+    tolerance: Positive = Field(1e-6, description="of size; nearer surfaces touch (predictive hulls, meshes)")
+    stages: dict[str, Switch] = Field({}, description="stages forced on or off, for an ablation; see `harness plan`")
+
+    @model_validator(mode="after")
+    def _possible(self) -> EngineSpec:
+        refuse_conflicts(self, ENGINE)
+        return self
+
+
+class ReferenceSpec(Declared):
+    """What errors are measured against."""
+
+    algorithm: Algorithm = Field("predictive", description="algorithm of the reference run")
+    tolerance: Positive = Field(1e-10, description="its tolerance, of size")
+
+
+class MeasureSpec(Declared):
+    """How often, how long and with how much memory."""
+
+    repeats: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(5, description="runs of every point")
+    timeout: Positive = Field(120.0, description="a run is ended after this time, s")
+    memory: Bytes = Field(4 * 1024**3, description="a run may take this much, bytes or text such as 4GiB")
+    tier: Literal["default", "long"] = Field("default", description="long: only with `harness sweep --long`")
+    max_runs: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(10_000, description="more runs than this are refused")
+    reference: ReferenceSpec | None = Field(None, description="measure errors against such a run")

@@ -1,0 +1,79 @@
+"""Meshes are found where they may be, and nowhere else."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from harness.errors import InputError
+from harness.experiment.mesh_location import locate_mesh
+
+
+@pytest.fixture
+def places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A working folder with an experiment's folder, meshes/, and a package that must not be imported."""
+    for name in (
+        "lab/own.ply",
+        "meshes/own.ply",
+        "meshes/shared.ply",
+        "secret.ply",
+        "pack/__init__.py",
+        "pack/data/p.obj",
+    ):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("raise SystemExit('imported')")
+    (tmp_path / "bare").mkdir()
+    (tmp_path / "bare" / "b.obj").write_text("")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    return tmp_path.resolve()
+
+
+def refused(reference: str) -> str:
+    with pytest.raises(InputError) as caught:
+        locate_mesh(reference, Path("lab"))
+    return str(caught.value)
+
+
+def test_beside_the_experiment_comes_first_then_meshes(places: Path) -> None:
+    assert locate_mesh("own.ply", Path("lab")) == places / "lab" / "own.ply"
+    assert locate_mesh("shared.ply", Path("lab")) == places / "meshes" / "shared.ply"
+    assert locate_mesh("../meshes/own.ply", Path("lab")) == places / "meshes" / "own.ply"
+
+
+def test_a_package_is_looked_into_without_being_imported(places: Path) -> None:
+    assert locate_mesh("package:pack/data/p.obj", Path("lab")) == places / "pack" / "data" / "p.obj"
+    assert "pack" not in sys.modules
+
+
+def test_a_shipped_package_of_meshes_works() -> None:
+    path = locate_mesh("package:pybullet_data/duck.obj", Path())
+    assert path.name == "duck.obj"
+    assert path.is_absolute()
+
+
+def test_nothing_outside_can_be_reached(places: Path) -> None:
+    (places / "lab" / "link.ply").symlink_to(places / "secret.ply")
+    (places / "lab" / "loop.ply").symlink_to(places / "lab" / "loop.ply")
+    for reference in ("../secret.ply", str(places / "secret.ply"), "link.ply", "/etc/passwd"):
+        assert "lies outside of the experiment's folder and the folders of meshes" in refused(reference)
+    assert "lies outside of the package pack" in refused("package:pack/../secret.ply")
+    for reference in ("loop.ply", "a\x00b", "a" * 5000, ".", ""):
+        assert "there is no mesh" in refused(reference)
+
+
+def test_a_package_that_is_none_is_refused(places: Path) -> None:
+    assert "is not installed" in refused("package:no_such_package/x.ply")
+    assert "must be package:NAME/PATH" in refused("package:os.path/x.ply")
+    assert "must be package:NAME/PATH" in refused("package:../x.ply")
+    assert "could hold data" in refused("package:bare/b.obj")
+    assert "could hold data" in refused("package:sys/b.obj")
+    assert "could hold data" in refused("package:json5_or_not/b.obj") or "installed" in refused(
+        "package:json5_or_not/b"
+    )
+
+
+def test_near_misses_are_named(places: Path) -> None:
+    assert refused("shard.ply").endswith('did you mean "shared.ply"?')
+    assert refused("package:pybullet_data/duk.obj").endswith('did you mean "package:pybullet_data/duck.obj"?')
