@@ -1,0 +1,159 @@
+"""Make, inspect and simplify mesh files.
+
+harness mesh make pumpkin --faces 1753
+harness mesh inspect meshes/*.ply
+harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from harness.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from harness.scene.mesh import Mesh
+
+SOLIDS = ("pumpkin", "icosphere", "cube")
+# Sentences for the facts of a mesh, in the order in which they are printed.
+FACTS = (
+    ("faces", "faces"),
+    ("vertices", "vertices"),
+    ("watertight", "watertight"),
+    ("open_edges", "open edges"),
+    ("convex", "convex"),
+    ("hull_vertices", "hull vertices"),
+    ("diameter", "bounding diameter"),
+    ("area", "area"),
+    ("volume", "volume"),
+    ("hull_volume", "hull volume"),
+    ("hull_volume_ratio", "volume / hull volume"),
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command takes."""
+    actions = parser.add_subparsers(dest="action", required=True, metavar="make|inspect|simplify")
+    make = actions.add_parser("make", help="write a solid with a given number of faces")
+    make.add_argument("solid", choices=SOLIDS)
+    make.add_argument("--faces", type=int, metavar="N", help="how many; an odd number gives an open mesh")
+    make.add_argument("--out", type=Path, metavar="FILE", help="a .ply file (default meshes/SOLID-N.ply)")
+    make.add_argument("--force", action="store_true", help="overwrite the file if it is there")
+    make.set_defaults(act=_make)
+    inspect = actions.add_parser("inspect", help="print facts about mesh files")
+    inspect.add_argument("files", type=Path, nargs="+", metavar="FILE")
+    inspect.add_argument("--json", action="store_true", help="print one JSON document")
+    inspect.set_defaults(act=_inspect)
+    simplify = actions.add_parser("simplify", help="write a mesh of fewer faces and the same extent")
+    simplify.add_argument("file", type=Path, metavar="FILE")
+    simplify.add_argument("--faces", type=int, required=True, metavar="N")
+    simplify.add_argument("--out", type=Path, required=True, metavar="FILE", help="a .ply file")
+    simplify.add_argument("--force", action="store_true", help="overwrite the file if it is there")
+    simplify.set_defaults(act=_simplify)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do what the action says; wrong input is raised."""
+    arguments.act(arguments)
+    return 0
+
+
+def _make(arguments: argparse.Namespace) -> None:
+    from harness.scene.solids import make_solid
+
+    vertices, faces = make_solid(arguments.solid, arguments.faces)
+    name = arguments.solid if arguments.faces is None else f"{arguments.solid}-{len(faces)}"
+    _write(arguments.out or Path("meshes") / f"{name}.ply", vertices, faces, arguments.force)
+
+
+def _simplify(arguments: argparse.Namespace) -> None:
+    from harness.scene.simplify import simplify
+
+    mesh = _opened([arguments.file])[arguments.file]
+    if isinstance(mesh, str):
+        raise InputError(mesh)
+    vertices, faces = simplify(mesh.vertices, mesh.faces, arguments.faces)
+    _write(arguments.out, vertices * mesh.diameter, faces, arguments.force)
+
+
+def _inspect(arguments: argparse.Namespace) -> None:
+    opened = _opened(arguments.files)
+    facts = [{"file": str(path), **_facts(mesh)} for path, mesh in opened.items() if not isinstance(mesh, str)]
+    if arguments.json:
+        print(json.dumps({"meshes": facts}, indent=2))
+    else:
+        print("\n\n".join(map(_paragraph, facts)))
+    problems = [Problem(mesh) for mesh in opened.values() if isinstance(mesh, str)]
+    if problems:
+        raise InputError(problems)
+
+
+def _opened(paths: list[Path]) -> dict[Path, Mesh | str]:
+    """The meshes of files from anywhere: read by a child process with limits."""
+    from harness.scene.mesh_child import open_meshes
+
+    return open_meshes(paths)
+
+
+def _write(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32], force: bool) -> None:
+    """Write a mesh and say what it became."""
+    from harness.scene.mesh_file import make_mesh
+    from harness.scene.ply_file import write_ply
+
+    if path.suffix.lower() != ".ply":
+        raise InputError(f"{path}: meshes are written as .ply")
+    mesh = make_mesh(path.name, vertices, faces)
+    try:
+        write_ply(path, vertices, faces, force)
+    except FileExistsError as error:
+        raise InputError(f"{path} is there already; --force overwrites it") from error
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from error
+    print(f"{path}: {len(faces)} faces, {len(mesh.vertices)} vertices, {len(mesh.hull.vertices)} of them on the hull")
+    for note in mesh.notes:
+        print(f"  note: {note}")
+    if len(faces) % 2:
+        print("  note: a closed surface of triangles has an even number of faces; with an odd number one is missing")
+
+
+def _facts(mesh: Mesh) -> dict[str, Any]:
+    """What there is to say of a mesh, in the unit of its file."""
+    from harness.scene.topology import area, topology, volume
+
+    about = topology(mesh.faces, len(mesh.vertices))
+    enclosed = abs(volume(mesh.vertices, mesh.faces)) if mesh.watertight and about.turned == 0 else None
+    hull = volume(mesh.hull.vertices, mesh.hull.faces)
+    return {
+        "faces": len(mesh.faces),
+        "vertices": len(mesh.vertices),
+        "watertight": mesh.watertight,
+        "open_edges": about.boundary,
+        "convex": mesh.convex,
+        "hull_vertices": len(mesh.hull.vertices),
+        "diameter": mesh.diameter,
+        "area": float(area(mesh.vertices, mesh.faces).sum()) * mesh.diameter**2,
+        "volume": None if enclosed is None else enclosed * mesh.diameter**3,
+        "hull_volume": hull * mesh.diameter**3,
+        "hull_volume_ratio": None if enclosed is None else enclosed / hull,
+        "notes": list(mesh.notes),
+    }
+
+
+def _paragraph(facts: dict[str, Any]) -> str:
+    """Facts for people: one a line."""
+    lines = [facts["file"]]
+    for key, name in FACTS:
+        lines.append(f"  {name:22}{_shown(facts[key])}")
+    return "\n".join([*lines, *(f"  note: {note}" for note in facts["notes"])])
+
+
+def _shown(value: float | bool | None) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "–" if value is None else f"{value:.6g}"

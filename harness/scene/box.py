@@ -1,0 +1,40 @@
+"""The closed box the bodies fly in, centred at the origin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
+"""The six walls, in the order in which they answer."""
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """An axis-aligned box.
+
+    Parameters
+    ----------
+    half : (3,) float array, m; half the sides, read-only
+    """
+
+    half: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        half = np.array(self.half, np.float64)
+        if half.shape != (3,) or not (np.isfinite(half) & (half > 0)).all():
+            raise ValueError(f"a box needs three positive finite half sides, not {self.half}")
+        half.setflags(write=False)
+        object.__setattr__(self, "half", half)
+
+    @property
+    def sides(self) -> NDArray[np.float64]:
+        """(3,) float array, m."""
+        return 2 * self.half
+
+    @property
+    def volume(self) -> float:
+        """m³."""
+        return float(np.prod(self.sides))

@@ -1,0 +1,83 @@
+"""Convex hull of a mesh, fit for support functions and for FCL's Convex: closed, outward, only its own vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from harness.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """A closed convex triangle surface; arrays are C-contiguous and read-only.
+
+    Parameters
+    ----------
+    vertices : (h, 3) float array, in the units of the mesh
+    faces : (g, 3) int32 array, counter-clockwise seen from outside; neighbours may be coplanar
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+
+
+def convex_hull(points: NDArray[np.float64]) -> Hull:
+    """The convex hull of points of any extent in three dimensions.
+
+    Parameters
+    ----------
+    points : (n, 3) float array
+
+    Returns
+    -------
+    Hull
+        Its vertices are among the points, in their order.
+
+    Raises
+    ------
+    InputError
+        If the points are too few or too flat to enclose a volume.
+    """
+    # Qt: facets with more than three corners come as triangles. Where that leaves a seam (it can where many
+    # points are collinear), QJ moves the points by some 1e-11 of the extent for the search alone.
+    for options in ("Qt", "QJ"):
+        try:
+            found = ConvexHull(points, qhull_options=options)
+        except (QhullError, ValueError) as error:
+            raise InputError("the mesh is flat: it has no extent in one direction, so no hull encloses it") from error
+        faces = _outward(points, found.simplices, found.equations[:, :3])
+        if _closed(faces):
+            break
+    else:
+        raise InputError("no closed convex hull of the mesh was found")
+    used, renumbered = np.unique(faces, return_inverse=True)
+    return hull_of(points[used], renumbered.reshape(-1, 3).astype(np.int32))
+
+
+def hull_of(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Hull:
+    """The hull with these arrays, which are copied and made read-only."""
+    vertices, faces = np.array(vertices, np.float64, order="C"), np.array(faces, np.int32, order="C")
+    vertices.setflags(write=False)
+    faces.setflags(write=False)
+    return Hull(vertices, faces)
+
+
+def _outward(
+    points: NDArray[np.float64], simplices: NDArray[np.int32], normals: NDArray[np.float64]
+) -> NDArray[np.int32]:
+    """The simplices, turned so that their corners run counter-clockwise about the outward normals."""
+    a, b, c = points[simplices[:, 0]], points[simplices[:, 1]], points[simplices[:, 2]]
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), normals) < 0
+    return np.where(inward[:, None], simplices[:, ::-1], simplices)
+
+
+def _closed(faces: NDArray[np.int32]) -> bool:
+    """Whether every directed edge occurs once, and its opposite too, on a surface without handles."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    here, there = np.unique(edges, axis=0), np.unique(edges[:, ::-1], axis=0)
+    vertices = len(np.unique(faces))
+    return len(here) == len(edges) and np.array_equal(here, there) and vertices - len(edges) // 2 + len(faces) == 2

@@ -1,0 +1,117 @@
+"""Regular places for equal spheres in a box, for packings that chance does not reach.
+
+Three lattices of sites a distance d apart, in every orientation to the axes: simple cubic, which suits boxes a few
+spheres wide, and the face-centred cubic and hexagonal ones, which fill a large box to 74 %.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import permutations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Room for rounding where spheres fit exactly, as eight of diameter 1 do in a box of side 2.
+EXACTLY = 1e-12
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Layers along z, of rows along y, of sites along x; all lengths in units of the spacing of neighbours.
+
+    Parameters
+    ----------
+    row, layer : distances of rows and of layers
+    row_shift : along x, of every other row
+    layer_shift : along x and y, of every other layer
+    """
+
+    row: float
+    layer: float
+    row_shift: float
+    layer_shift: tuple[float, float]
+
+    def lines(self, layer: int, row: int) -> tuple[float, float]:
+        """Where a row begins, x and y, for rows and layers counted modulo 2."""
+        return (row * self.row_shift + layer * self.layer_shift[0]) % 1.0, layer * self.layer_shift[1] + row * self.row
+
+
+LATTICES = (
+    Lattice(1.0, 1.0, 0.0, (0.0, 0.0)),
+    Lattice(1.0, np.sqrt(1 / 2), 0.0, (0.5, 0.5)),
+    Lattice(np.sqrt(3 / 4), np.sqrt(2 / 3), 0.5, (0.5, np.sqrt(1 / 12))),
+)
+
+
+def sites(count: int, distance: float, room: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """At least `count` sites, as far apart as the best of the lattices allows.
+
+    Parameters
+    ----------
+    count : how many are wanted
+    distance : the least distance of two sites
+    room : (3,) float array, sides of the box they must lie in, centred at the origin; zeros are allowed
+
+    Returns
+    -------
+    sites : (m, 3) float array; fewer than `count` if no lattice has as many, then those of the one with the most
+    spacing : float, the distance of neighbours, at least `distance` (up to rounding, where they fit exactly)
+    """
+    choices = [(lattice, list(axes)) for lattice in LATTICES for axes in permutations(range(3))]
+    spacings = [_widest(lattice, room[axes] / distance, count) for lattice, axes in choices]
+    if not any(spacings):
+        spacings = [float(_count(lattice, room[axes] / distance)) for lattice, axes in choices]
+        spacing = 1.0
+    else:
+        spacing = max(spacings)
+    lattice, axes = choices[int(np.argmax(spacings))]
+    found = _spread(lattice, room[axes], spacing * distance)
+    # What rounding let in is not offered as room.
+    return found[:, np.argsort(axes)], max(spacing * (1 - 2 * EXACTLY), 1.0) * distance
+
+
+def _widest(lattice: Lattice, room: NDArray[np.float64], count: int) -> float:
+    """The largest spacing, at least 1, with so many sites; 0 if there is none."""
+    if _count(lattice, room) < count:
+        return 0.0
+    low, high = 1.0, 2.0
+    while _count(lattice, room / high) >= count and high < 2 * room.max() + 2:
+        low, high = high, 2 * high
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _count(lattice, room / middle) >= count else (low, middle)
+    return low
+
+
+def _count(lattice: Lattice, room: NDArray[np.float64]) -> int:
+    """How many sites of spacing 1 are in a room."""
+    return sum(
+        _steps(room[2] - layer * lattice.layer, 2 * lattice.layer)
+        * _steps(room[1] - lattice.lines(layer, row)[1], 2 * lattice.row)
+        * _steps(room[0] - lattice.lines(layer, row)[0], 1.0)
+        for layer, row in product(range(2), range(2))
+    )
+
+
+def _spread(lattice: Lattice, room: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """The sites in a room, drawn apart along each axis until they reach its walls."""
+    scaled = room / spacing
+    parts = []
+    for layer, row in product(range(2), range(2)):
+        x, y = lattice.lines(layer, row)
+        z = layer * lattice.layer
+        axes = [
+            start + pitch * np.arange(_steps(side - start, pitch))
+            for start, pitch, side in zip((x, y, z), (1.0, 2 * lattice.row, 2 * lattice.layer), scaled, strict=True)
+        ]
+        parts.append(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3))
+    found = np.concatenate(parts)
+    reach = found.max(axis=0)
+    stretch = np.divide(room, reach, out=np.zeros(3), where=reach > 0)
+    return np.asarray((found - reach / 2) * stretch)
+
+
+def _steps(room: float, pitch: float) -> int:
+    """How many sites a pitch apart fit in a room, the first at its wall."""
+    return int(np.floor(room / pitch + EXACTLY)) + 1 if room >= -EXACTLY else 0

@@ -1,0 +1,49 @@
+"""The mesh all bodies of a scene share: normalised, with its convex hull."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.scene.hull import Hull
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangle surface whose minimal bounding sphere has its centre at the origin and diameter 1.
+
+    All arrays are C-contiguous and read-only: every body, backend and stage looks at the same ones.
+
+    Parameters
+    ----------
+    name : the file's name
+    vertices : (v, 3) float array; every vertex is used by a face, no two are equal
+    faces : (f, 3) int32 array, as many as the file has, in its order
+    hull : Hull of the vertices
+    digest : sha256 of the vertices and faces, hexadecimal
+    watertight : every edge belongs to exactly two faces
+    convex : the surface is its own hull, so that the hull may stand for it
+    notes : what a person should know, such as "open: 3 boundary edges"
+    diameter : of the minimal bounding sphere before it was normalised, in the file's unit
+    """
+
+    name: str
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    hull: Hull
+    digest: str
+    watertight: bool
+    convex: bool
+    notes: tuple[str, ...] = ()
+    diameter: float = 1.0
+
+
+def digest(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:
+    """The sha256 by which two meshes are the same: of shapes and little-endian arrays, hexadecimal."""
+    content = hashlib.sha256(f"{len(vertices)} {len(faces)}\n".encode())
+    content.update(np.ascontiguousarray(vertices, "<f8").data)
+    content.update(np.ascontiguousarray(faces, "<i4").data)
+    return content.hexdigest()

@@ -1,0 +1,61 @@
+"""One scene: a shape, its mesh, the bodies that have it, and the box around them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from harness.scene.bodies import Bodies
+from harness.scene.box import Box
+from harness.scene.mesh import Mesh
+
+Shape = Literal["sphere", "hull", "mesh"]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything a run starts from.
+
+    Parameters
+    ----------
+    shape : what the narrow phase sees of a body
+    mesh : the mesh all bodies share; None only for spheres
+    bodies : as they are at time 0
+    box : closed, centred at the origin
+    """
+
+    shape: Shape
+    mesh: Mesh | None
+    bodies: Bodies
+    box: Box
+
+    def __post_init__(self) -> None:
+        if self.mesh is None and self.shape != "sphere":
+            raise ValueError(f"shape {self.shape} needs a mesh")
+
+    @property
+    def faces(self) -> int:
+        """Faces of the mesh; 0 without one."""
+        return len(self.mesh.faces) if self.mesh else 0
+
+    @property
+    def hull_vertices(self) -> int:
+        """Vertices of the mesh's convex hull; 0 without a mesh."""
+        return len(self.mesh.hull.vertices) if self.mesh else 0
+
+    @property
+    def packing(self) -> float:
+        """Volume of all bounding spheres over the volume of the box."""
+        return float(np.pi / 6 * np.sum(self.bodies.sizes**3) / self.box.volume)
+
+    @property
+    def box_side(self) -> float:
+        """m. Of a box with unequal sides, the side of the cube of the same volume."""
+        return float(np.cbrt(self.box.volume))
+
+    @property
+    def mean_size(self) -> float:
+        """m. Mean diameter of the bounding spheres; 0 without bodies."""
+        return float(self.bodies.sizes.mean()) if len(self.bodies) else 0.0

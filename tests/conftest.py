@@ -1,0 +1,56 @@
+"""Scenes for tests: small, seeded, and made without files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+from harness.scene.bodies import Bodies
+from harness.scene.box import Box
+from harness.scene.hull import convex_hull
+from harness.scene.mesh import Mesh
+from harness.scene.scene import Scene
+
+# the first call of a kernel compiles it, so a time limit an example would fail at random
+settings.register_profile("harness", deadline=None)
+settings.load_profile("harness")
+
+
+def make_bodies(positions, velocities=None, *, sizes=None, masses=None, spins=None, quaternions=None) -> Bodies:
+    positions = np.array(positions, float).reshape(-1, 3)
+    count = len(positions)
+    sizes = np.ones(count) if sizes is None else np.array(sizes, float)
+    return Bodies(
+        positions=positions,
+        velocities=np.zeros((count, 3)) if velocities is None else np.array(velocities, float).reshape(-1, 3),
+        quaternions=np.tile([1.0, 0, 0, 0], (count, 1)) if quaternions is None else np.array(quaternions, float),
+        spins=np.zeros((count, 3)) if spins is None else np.array(spins, float),
+        sizes=sizes,
+        masses=sizes**3 if masses is None else np.array(masses, float),
+    )
+
+
+def cube_mesh() -> Mesh:
+    """A cube of space diagonal 1."""
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / np.sqrt(12)
+    hull = convex_hull(corners)
+    return Mesh("cube", hull.vertices, hull.faces, hull, "cube", watertight=True, convex=True)
+
+
+def random_scene(shape: str, count: int, side: float, seed: int = 0) -> Scene:
+    """Spinning cubes or spheres, overlapping as chance has it."""
+    rng = np.random.default_rng(seed)
+    quaternions = rng.normal(size=(count, 4))
+    bodies = make_bodies(
+        rng.uniform(-side / 2 + 0.5, side / 2 - 0.5, (count, 3)),
+        rng.normal(size=(count, 3)),
+        spins=rng.normal(size=(count, 3)),
+        quaternions=quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True),
+    )
+    return Scene(shape, cube_mesh(), bodies, Box(np.full(3, side / 2)))
+
+
+@pytest.fixture
+def cube() -> Mesh:
+    return cube_mesh()

@@ -1,0 +1,68 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from harness.cli.main import main
+from harness.scene.mesh_file import read_mesh
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_made_pumpkins_go_to_meshes_and_are_not_overwritten_unasked(capsys):
+    command = ["mesh", "make", "pumpkin", "--faces", "501"]
+    assert main(command) == 0
+    assert "501 faces" in (said := capsys.readouterr().out)
+    assert "even number of faces" in said
+    assert len(read_mesh("meshes/pumpkin-501.ply").faces) == 501
+    assert main(command) == 2
+    assert "--force" in capsys.readouterr().err
+    assert main([*command, "--force"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("make pumpkin", "how many faces"),
+        ("make pumpkin --faces 12", "at least 40"),
+        ("make icosphere --faces 100", "not 100"),
+        ("make cube --faces 14", "12 faces"),
+        ("make cube --out cube.stl", "written as .ply"),
+        ("inspect none.obj", "none.obj: there is no such mesh file"),
+        ("simplify none.obj --faces 10 --out a.ply", "none.obj: there is no such mesh file"),
+    ],
+)
+def test_wrong_input_is_one_sentence_and_exit_2(words, reason, capsys):
+    assert main(["mesh", *words.split()]) == 2
+    said = capsys.readouterr().err.strip()
+    assert reason in said
+    assert "\n" not in said
+
+
+def test_inspect_says_the_facts_in_the_unit_of_the_file(capsys):
+    trimesh.creation.box(extents=[2, 2, 2]).export("cube.stl")
+    Path("bad.obj").write_text("nonsense")
+    assert main(["mesh", "inspect", "cube.stl", "bad.obj", "--json"]) == 2
+    said = capsys.readouterr()
+    (facts,) = json.loads(said.out)["meshes"]
+    assert said.err.startswith("bad.obj: ")
+    assert facts["faces"] == 12
+    assert facts["watertight"]
+    assert facts["convex"]
+    assert [facts[key] for key in ("diameter", "area", "volume", "hull_volume_ratio")] == pytest.approx(
+        [np.sqrt(12), 24, 8, 1]
+    )
+    assert main(["mesh", "inspect", "cube.stl"]) == 0
+    assert "bounding diameter     3.4641" in capsys.readouterr().out
+
+
+def test_simplify_keeps_the_extent():
+    trimesh.creation.icosphere(4, radius=20).export("ball.obj")
+    assert main(["mesh", "simplify", "ball.obj", "--faces", "400", "--out", "coarse.ply"]) == 0
+    assert len(read_mesh("coarse.ply").faces) == 400
+    assert read_mesh("coarse.ply").diameter == pytest.approx(40, rel=1e-7)
