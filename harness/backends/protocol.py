@@ -1,0 +1,56 @@
+"""What a backend is: a complete detector, asked for all touching pairs at given poses.
+
+A package adds one by a class of this form and an entry point in the group `harness.backends`; it is then named by
+`engine.backend` with the algorithm `native`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol, runtime_checkable
+
+from harness.arrays import Floats, Pairs
+from harness.scene.scene import Scene, Shape
+
+
+@runtime_checkable
+class Backend(Protocol):
+    """A detector; made without arguments, then loaded once, then asked once a frame.
+
+    It does not move anything: motion, box walls and response are the same for all backends.
+
+    Attributes
+    ----------
+    name : as in `engine.backend`
+    shapes : the shapes it can hold; a shape it only approximates is in `approximations` too
+    """
+
+    name: str
+    shapes: tuple[Shape, ...]
+
+    def tolerance(self, shape: Shape) -> float:
+        """Gap, as a fraction of the size of a body, below which a verdict is not to be trusted."""
+
+    def load(self, scene: Scene) -> None:
+        """Build whatever the bodies of the scene need; no clock of a phase runs."""
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        """All touching pairs at these poses.
+
+        Parameters
+        ----------
+        positions : (n, 3) float array, m
+        quaternions : (n, 4) float array, unit, w x y z
+        """
+
+
+def counters(backend: Backend) -> Mapping[str, int]:
+    """What the backend has counted since it was loaded (`pair_tests`, `narrow_tests`); empty if it does not count."""
+    counted: Mapping[str, int] = getattr(backend, "counters", {})
+    return counted
+
+
+def approximations(backend: Backend) -> Mapping[Shape, str]:
+    """The shapes that the backend replaces by another, and how; empty for an exact backend."""
+    replaced: Mapping[Shape, str] = getattr(backend, "approximations", {})
+    return replaced

@@ -1,0 +1,70 @@
+"""pybullet in DIRECT mode: its own broad and narrow phase, without its dynamics. Spheres and convex hulls.
+
+A mesh is replaced by its hull: Bullet never tests two concave meshes against each other, and says nothing about it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pybullet
+
+from harness.arrays import Floats, Pairs
+from harness.narrowphase.units import unit_of
+from harness.scene.scene import Scene, Shape
+
+# Bullet inflates every hull by this (in its own units) and offers contact points up to 0.02 apart; a margin of zero is
+# worse, since real hits are missed. The gap between two hulls is contactDistance + 2 margins.
+MARGIN = 0.001
+
+
+class PyBullet:
+    """Bullet's collision pipeline, poses set and contacts read once a call."""
+
+    name = "pybullet"
+    shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    approximations = {"mesh": "pybullet replaces each mesh by its convex hull: it never tests two concave meshes"}  # noqa: RUF012
+
+    def tolerance(self, shape: Shape) -> float:
+        """Spheres to rounding; hull vertices are quantised to about 1e-4 of the extent."""
+        return 1e-15 if shape == "sphere" else 1e-4
+
+    def load(self, scene: Scene) -> None:
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self._unit = unit_of(scene.bodies.sizes)
+        self._inflation = 0.0 if scene.shape == "sphere" else 2 * MARGIN
+        shapes: dict[float, int] = {}
+        self._numbers = {}
+        for i, size in enumerate((scene.bodies.sizes / self._unit).tolist()):
+            if size not in shapes:
+                shapes[size] = self._shape(scene, size)
+            # a mass, because two bodies without one never show a contact
+            body = pybullet.createMultiBody(
+                baseMass=1.0, baseCollisionShapeIndex=shapes[size], physicsClientId=self._client
+            )
+            self._numbers[body] = i
+        self._bodies = list(self._numbers)
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        client, place = self._client, pybullet.resetBasePositionAndOrientation
+        scaled = (positions / self._unit).tolist()
+        turned = quaternions[:, [1, 2, 3, 0]].tolist()
+        for body, position, quaternion in zip(self._bodies, scaled, turned, strict=True):
+            place(body, position, quaternion, physicsClientId=client)
+        pybullet.performCollisionDetection(physicsClientId=client)
+        numbers, inflation = self._numbers, self._inflation
+        touching = {
+            (numbers[contact[1]], numbers[contact[2]])
+            for contact in pybullet.getContactPoints(physicsClientId=client)
+            if contact[8] + inflation <= 0.0
+        }
+        ordered = sorted((i, j) if i < j else (j, i) for i, j in touching)
+        return np.array(ordered, np.int64).reshape(-1, 2)
+
+    def _shape(self, scene: Scene, size: float) -> int:
+        if scene.shape == "sphere" or scene.mesh is None:
+            return int(
+                pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=size / 2, physicsClientId=self._client)
+            )
+        # vertices without indices make a convex hull; with indices they would make a concave mesh
+        vertices = (scene.mesh.hull.vertices * size).tolist()
+        return int(pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=vertices, physicsClientId=self._client))
