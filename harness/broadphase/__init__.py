@@ -1,0 +1,1 @@
+"""Which pairs can touch: all pairs, uniform and hierarchical grid."""

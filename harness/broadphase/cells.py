@@ -1,0 +1,290 @@
+"""Cells: the kernels under both grids. Bodies are sorted by cell, and only neighbouring cells are compared.
+
+Bodies belong to levels, the largest first. Every level has a lattice of its own over the same space, with cells at
+least as large as its largest body, so that two of its bodies touch only from the same cell or from neighbouring ones.
+The cells of all levels are numbered on, so that one counting sort a frame puts every body in its place. The uniform
+grid has one level.
+
+A row of cells along z ends with a cell that is always empty, a plane with such a row, and a lattice with such a plane.
+They are the missing neighbours of the cells at the border: no neighbour needs a question whether it exists, and three
+neighbours along z are one run of bodies.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.arrays import Floats
+from harness.broadphase.pairs import require_finite, touching
+from harness.kernel import inner, kernel
+
+Ints = NDArray[np.int32]
+Keys = NDArray[np.int64]
+Levels = NDArray[np.void]
+Level = Any  # one record of Levels, whose fields mypy does not know
+
+LEVEL = np.dtype(
+    [
+        ("reach", np.float64),  # m, the largest radius
+        ("budget", np.int64),  # cells it may have
+        ("begin", np.int64),  # its bodies have the slots from here
+        ("end", np.int64),  # up to here
+        ("first", np.int64),  # its first cell
+        ("cells", np.int64),  # how many it has
+        ("row", np.int64),  # from a cell to its neighbour along y
+        ("plane", np.int64),  # from a cell to its neighbour along x
+        *((f"low_{axis}", np.float64) for axis in "xyz"),  # m, where the lattice starts
+        *((f"last_{axis}", np.float64) for axis in "xyz"),  # the last cell along the axis, counted from 0
+        *((f"scale_{axis}", np.float64) for axis in "xyz"),  # 1/m, cells a length
+    ]
+)
+
+SLACK = 1e-6
+"""Relative surplus of a cell over its largest body: more than rounding can do to fewer than 1e9 cells along an axis."""
+
+
+@kernel
+def close_pairs(
+    positions: Floats,
+    half: Floats,
+    radii: Floats,
+    members: Ints,
+    levels: Levels,
+    start: Ints,
+    home: Ints,
+    slots: Ints,
+    spheres: Floats,
+    keys: Keys,
+) -> tuple[int, int]:
+    """Sort the bodies into cells and test neighbours.
+
+    A slot is a body's place in the order by level, then cell, then number.
+
+    Parameters
+    ----------
+    positions : (n, 3), m
+    half : (3,), m; half the sides of the box
+    radii : (n,), m
+    members : (n,) the bodies by level, each level's in ascending order
+    levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written
+    start : (sum of budgets + 1,) written: the first slot of each cell
+    home : (n,) written: each member's cell
+    slots, spheres : (n, 2), (n, 4) written: each slot's cell and body, and x, y, z and radius, m
+    keys : (room,) written: i << 32 | j of each close pair, in no order, as far as there is room
+
+    Returns
+    -------
+    How many pairs are close, and how many were tested.
+    """
+    require_finite(positions)
+    fit_lattices(positions, half, levels)
+    sort_by_cell(positions, radii, members, levels, start, home, slots, spheres)
+    found, tests = 0, 0
+    for fine in range(len(levels)):
+        found, tests = pairs_within(levels[fine], start, slots, spheres, keys, found, tests)
+        for coarse in range(fine):
+            seekers, others = levels[fine], levels[coarse]
+            if work(others, seekers) < work(seekers, others):
+                seekers, others = others, seekers
+            found, tests = pairs_between(seekers, others, start, slots, spheres, keys, found, tests)
+    return found, tests
+
+
+@kernel
+def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
+    """Spread each level's lattice over the part of the box where bodies are.
+
+    Bodies beyond the walls belong to the border cells, so that one that has shot far out does not thin out the lattice.
+    """
+    x, wide = span(positions[:, 0], half[0])
+    y, deep = span(positions[:, 1], half[1])
+    z, tall = span(positions[:, 2], half[2])
+    first = 0
+    for index in range(len(levels)):
+        level = levels[index]
+        level.low_x, level.low_y, level.low_z = x, y, z
+        fit_cells(level, wide, deep, tall)
+        level.first = first
+        first += level.cells
+
+
+@kernel
+def span(coordinates: Floats, half: float) -> tuple[float, float]:
+    """Where the bodies begin along an axis of the box, m, and over which length they spread."""
+    low, high = half, -half
+    for i in range(len(coordinates)):
+        low = min(low, coordinates[i])
+        high = max(high, coordinates[i])
+    low = max(low, -half)
+    return low, max(0.0, min(high, half) - low)
+
+
+@kernel
+def fit_cells(level: Level, wide: float, deep: float, tall: float) -> None:
+    """Choose equal cells, cubes or nearly, that hold a body of the level, but no more of them than its budget."""
+    edge = 2.0 * level.reach * (1.0 + SLACK)
+    while True:
+        nx, ny, nz = cells_along(wide, edge), cells_along(deep, edge), cells_along(tall, edge)
+        excess = (nx + 1.0) * (ny + 1.0) * (nz + 1.0) / level.budget
+        if excess <= 1.0:
+            break
+        edge *= max(1.02, excess ** (1.0 / ((nx > 1.0) + (ny > 1.0) + (nz > 1.0))))
+    level.row = int(nz) + 1
+    level.plane = level.row * (int(ny) + 1)
+    level.cells = level.plane * (int(nx) + 1)
+    level.last_x, level.last_y, level.last_z = nx - 1.0, ny - 1.0, nz - 1.0
+    level.scale_x = nx / wide if nx > 1.0 else 0.0
+    level.scale_y = ny / deep if ny > 1.0 else 0.0
+    level.scale_z = nz / tall if nz > 1.0 else 0.0
+
+
+@kernel
+def cells_along(length: float, edge: float) -> float:
+    """How many cells fit, at least one."""
+    return max(1.0, math.floor(length / edge))
+
+
+@kernel
+def cell_at(level: Level, x: float, y: float, z: float) -> int:
+    """The level's cell at a point, m; beyond the border, the nearest."""
+    ix = step(x, level.low_x, level.scale_x, level.last_x)
+    iy = step(y, level.low_y, level.scale_y, level.last_y)
+    iz = step(z, level.low_z, level.scale_z, level.last_z)
+    return int(level.first + ix * level.plane + iy * level.row + iz)
+
+
+@kernel
+def step(x: float, low: float, scale: float, last: float) -> int:
+    """Cell along an axis. It never decreases with x, whatever is rounded: `steps` relies on it."""
+    return int(min(max((x - low) * scale, 0.0), last))
+
+
+@kernel
+def steps(x: float, reach: float, low: float, scale: float, last: float) -> tuple[int, int]:
+    """First and last cell along an axis within reach of a coordinate: no body there is in any other cell."""
+    return step(x - reach, low, scale, last), step(x + reach, low, scale, last)
+
+
+@kernel
+def sort_by_cell(
+    positions: Floats,
+    radii: Floats,
+    members: Ints,
+    levels: Levels,
+    start: Ints,
+    home: Ints,
+    slots: Ints,
+    spheres: Floats,
+) -> None:
+    """Counting sort: count the bodies of each cell, sum up to each cell's end, fill each cell from its end."""
+    used = levels[-1].first + levels[-1].cells
+    start[: used + 1] = 0
+    for index in range(len(levels)):
+        level = levels[index]
+        for member in range(level.begin, level.end):
+            i = members[member]
+            cell = cell_at(level, positions[i, 0], positions[i, 1], positions[i, 2])
+            home[member] = cell
+            start[cell] += 1
+    end = 0
+    for cell in range(used + 1):
+        end += start[cell]
+        start[cell] = end
+    for member in range(len(members) - 1, -1, -1):
+        i, cell = members[member], home[member]
+        slot = start[cell] - 1
+        start[cell] = slot
+        slots[slot, 0], slots[slot, 1] = cell, i
+        for axis in range(3):
+            spheres[slot, axis] = positions[i, axis]
+        spheres[slot, 3] = radii[i]
+
+
+@kernel
+def pairs_within(
+    level: Level, start: Ints, slots: Ints, spheres: Floats, keys: Keys, found: int, tests: int
+) -> tuple[int, int]:
+    """Each body with those after it in its own cell, and with the later half of the neighbouring cells."""
+    row, plane = level.row, level.plane
+    for slot in range(level.begin, level.end):
+        cell = slots[slot, 0]
+        end = start[cell + 2]
+        found = compare(slot, slot + 1, end, slots, spheres, keys, found)
+        tests += max(0, end - slot - 1)
+        for neighbour in range(4):
+            middle = cell + row if neighbour == 0 else cell + plane + (neighbour - 2) * row
+            begin, end = start[middle - 1], start[middle + 2]
+            found = compare(slot, begin, end, slots, spheres, keys, found)
+            tests += end - begin
+    return found, tests
+
+
+@kernel
+def pairs_between(
+    seekers: Level, others: Level, start: Ints, slots: Ints, spheres: Floats, keys: Keys, found: int, tests: int
+) -> tuple[int, int]:
+    """Each body of one level with the bodies of the other in all cells where their centres can be.
+
+    Either level may seek. Many small bodies each look into a few cells of the coarse lattice, but a few large ones do
+    less work if they go through the fine cells that they cover.
+    """
+    for slot in range(seekers.begin, seekers.end):
+        x, y, z = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2]
+        reach = (spheres[slot, 3] + others.reach) * (1.0 + SLACK)
+        x0, x1 = steps(x, reach, others.low_x, others.scale_x, others.last_x)
+        y0, y1 = steps(y, reach, others.low_y, others.scale_y, others.last_y)
+        z0, z1 = steps(z, reach, others.low_z, others.scale_z, others.last_z)
+        for plane in range(others.first + x0 * others.plane, others.first + x1 * others.plane + 1, others.plane):
+            for row in range(plane + y0 * others.row, plane + y1 * others.row + 1, others.row):
+                begin, end = start[row + z0], start[row + z1 + 1]
+                found = compare(slot, begin, end, slots, spheres, keys, found)
+                tests += end - begin
+    return found, tests
+
+
+@kernel
+def work(seekers: Level, others: Level) -> float:
+    """Steps that `pairs_between` can be expected to take: rows of cells looked into, and bodies tested there."""
+    reach = seekers.reach + others.reach
+    rows = cells_covered(reach, others.scale_x, others.last_x) * cells_covered(reach, others.scale_y, others.last_y)
+    crowd = cells_covered(reach, others.scale_z, others.last_z) * (others.end - others.begin) / others.cells
+    return float((seekers.end - seekers.begin) * (4.0 + rows * (1.0 + crowd)))  # 4: to find the first cell
+
+
+@kernel
+def cells_covered(reach: float, scale: float, last: float) -> float:
+    """Cells along an axis within reach of a point, on average, m and 1/m."""
+    return min(1.0 + 2.0 * reach * scale, 1.0 + last)
+
+
+@inner
+def compare(slot: int, begin: int, end: int, slots: Ints, spheres: Floats, keys: Keys, found: int) -> int:
+    """Put the body in a slot to the test with a run of others. Returns how many close pairs are found by now."""
+    x, y, z, radius = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2], spheres[slot, 3]
+    for other in range(begin, end):
+        dx, dy, dz = x - spheres[other, 0], y - spheres[other, 1], z - spheres[other, 2]
+        if touching(dx, dy, dz, radius + spheres[other, 3]):
+            if found < len(keys):
+                i, j = slots[slot, 1], slots[other, 1]
+                keys[found] = min(i, j) << 32 | max(i, j)
+            found += 1
+    return found
+
+
+@kernel
+def count_cells(levels: Levels, spheres: Floats) -> tuple[int, int]:
+    """Cells of its own level that a body's bounding cube overlaps: the most of any body, and the sum over all."""
+    most, total = 0, 0
+    for index in range(len(levels)):
+        level = levels[index]
+        for slot in range(level.begin, level.end):
+            x, y, z, r = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2], spheres[slot, 3]
+            x0, x1 = steps(x, r, level.low_x, level.scale_x, level.last_x)
+            y0, y1 = steps(y, r, level.low_y, level.scale_y, level.last_y)
+            z0, z1 = steps(z, r, level.low_z, level.scale_z, level.last_z)
+            overlapped = (x1 - x0 + 1) * (y1 - y0 + 1) * (z1 - z0 + 1)
+            most = max(most, overlapped)
+            total += overlapped
+    return most, total
