@@ -1,0 +1,82 @@
+"""What a run reports: every metric by name, with its unit and meaning.
+
+The table is the single source of names: runs may report nothing else, `harness list` prints it, and expectations and
+claims are checked against it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Kind = Literal["counter", "clock", "error", "resource"]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One metric: its unit ("1" for a plain number), its kind and what it means.
+
+    Counters are exact and the same on every machine; clocks are noisy and need statistics; errors are deterministic.
+    """
+
+    name: str
+    unit: str
+    kind: Kind
+    description: str
+
+    @property
+    def noisy(self) -> bool:
+        """Whether two repeats of the same run may differ."""
+        return self.kind in ("clock", "resource")
+
+
+def _table(*metrics: Metric) -> dict[str, Metric]:
+    return {metric.name: metric for metric in metrics}
+
+
+def _clock(name: str, meaning: str, unit: str = "s") -> tuple[Metric, Metric]:
+    return (
+        Metric(name, unit, "clock", f"CPU time: {meaning}"),
+        Metric(f"{name}_elapsed", unit, "clock", f"elapsed time: {meaning}"),
+    )
+
+
+METRICS: dict[str, Metric] = _table(
+    Metric("frames", "1", "counter", "frames stepped: round(duration / dt)"),
+    Metric("pair_tests", "1", "counter", "pairs of bodies put to any test beyond bookkeeping"),
+    Metric("narrow_tests", "1", "counter", "pairs of bodies put to the exact shape"),
+    Metric("box_tests", "1", "counter", "tests of a body against one of the six walls"),
+    Metric("pair_hits", "1", "counter", "touching pairs that were approaching, and so were answered"),
+    Metric("pair_contacts", "1", "counter", "touching pairs that were already separating, and so were left alone"),
+    Metric("box_hits", "1", "counter", "wall contacts that were approaching, and so were answered"),
+    Metric("predictions", "1", "counter", "searches for a body's next event"),
+    Metric("events", "1", "counter", "answered hits of pairs and walls"),
+    *_clock("pair_seconds", "finding the touching pairs, pose updates included"),
+    *_clock("box_seconds", "testing the box walls"),
+    *_clock("response_seconds", "answering hits"),
+    *_clock(
+        "run_seconds", "the whole motion loop, without imports, compilation, placement, mesh building and recording"
+    ),
+    *_clock("setup_seconds", "before the motion loop: placement, mesh building, loading the backend"),
+    *_clock("pair_seconds_per_frame", "pair_seconds / frames"),
+    *_clock("box_seconds_per_frame", "box_seconds / frames"),
+    *_clock("frames_per_second", "frames / run_seconds", "1/s"),
+    *_clock("simulated_per_second", "simulated seconds / run_seconds", "s/s"),
+    Metric("energy_drift", "1", "error", "largest |E - E0| / E0 of the translational energy"),
+    Metric("momentum_drift", "1", "error", "largest change of total momentum by pair hits, of the initial sum of m|v|"),
+    Metric("max_penetration", "1", "error", "deepest overlap of a touching pair seen in a frame, of its mean size"),
+    Metric("escaped", "1", "error", "bodies whose centre was seen outside the box"),
+    Metric("missed_hits", "1", "error", "hits of the reference that were not reported, of the reference's hits"),
+    Metric("extra_hits", "1", "error", "hits reported that the reference does not have, of the reference's hits"),
+    Metric("time_error", "s", "error", "median absolute time error of matched hits"),
+    Metric("position_error", "m", "error", "largest distance from the reference before the first divergence"),
+    Metric("peak_memory", "B", "resource", "largest resident memory of the run's process"),
+)
+
+# Parameters that follow from a scene and its mesh; usable wherever a swept leaf is.
+DERIVED: dict[str, str] = {
+    "faces": "faces of the mesh",
+    "hull_vertices": "vertices of the mesh's convex hull",
+    "packing": "volume of all bounding spheres / volume of the box",
+    "box_side": "m, cube root of the box volume",
+}

@@ -1,0 +1,195 @@
+"""Numbers from repeats: medians with the interval that they really have, paired ratios and growth exponents.
+
+Intervals of medians come from order statistics and so ask nothing of the noise but independence. With five repeats they
+are the range, which covers the true median with probability 1 - 2/2^5 = 93.75 %; fewer repeats have a range and no
+interval. Nothing here is random: the same values give the same numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+CONFIDENCE = 0.95
+FEWEST_FOR_INTERVAL = 5
+NOISY_ABOVE = 0.05  # half an interval, of the median
+# In scaled median absolute deviations. Of clean samples of five, the usual three would flag every fourth; five flag one
+# in nine.
+OUTLIER_BEYOND = 5.0
+ENOUGH_RANGE = 8.0  # largest x / smallest x
+FEWEST_FOR_EXPONENT = 3
+
+_CONSTANT = 1e-12  # what varies by less, relatively, varies by rounding
+_SCALED = 1.0 / float(stats.norm.ppf(0.75))  # makes a median absolute deviation a standard deviation of normal noise
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Repeats of one number.
+
+    Parameters
+    ----------
+    median : NaN where there is no value
+    low, high : the interval of the median; below five values their range
+    coverage : probability that such an interval holds the true median; None below five values
+    n : values counted
+    outliers : places, in the values given, of those off the median by more than five scaled median absolute deviations
+        and by more than 5 % of it. They are flagged, and count like all others.
+    missing : values that were NaN, and do not count
+    """
+
+    median: float
+    low: float
+    high: float
+    coverage: float | None
+    n: int
+    outliers: tuple[int, ...] = ()
+    missing: int = 0
+
+    @property
+    def spread(self) -> float:
+        """Half the interval, of the median; 0 where all values are the same."""
+        half = (self.high - self.low) / 2.0
+        if half == 0.0:
+            return 0.0
+        return half / abs(self.median) if self.median else math.inf
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the spread is at most 5 %; None below five values, where it cannot be said."""
+        return None if self.coverage is None else self.spread <= NOISY_ABOVE
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """The power of x that y grows with: y ~ x^value.
+
+    Parameters
+    ----------
+    value : NaN below two usable points
+    low, high : the 95 % interval of the slope; NaN below three usable points
+    r2 : share of the variance of log y that the power law explains
+    range_factor : largest usable x / smallest
+    n : usable points
+    dropped : the x that have no place on logarithmic axes: x or median y not above 0
+    """
+
+    value: float
+    low: float
+    high: float
+    r2: float
+    range_factor: float
+    n: int
+    dropped: tuple[float, ...] = ()
+
+    @property
+    def enough(self) -> bool:
+        """Whether there is range enough to speak of growth: three points, and a factor of 8 in x."""
+        return self.n >= FEWEST_FOR_EXPONENT and self.range_factor >= ENOUGH_RANGE * (1.0 - 1e-9)
+
+
+def summary(values: ArrayLike) -> Summary:
+    """The median of repeats, with the narrowest symmetric pair of order statistics that covers it 95 times in 100."""
+    given = np.asarray(values, dtype=float).ravel()
+    counted = np.sort(given[~np.isnan(given)])
+    n, missing = len(counted), int(np.isnan(given).sum())
+    if n == 0:
+        return Summary(math.nan, math.nan, math.nan, None, 0, missing=missing)
+    median = float(np.median(counted))
+    if n < FEWEST_FOR_INTERVAL:
+        return Summary(median, float(counted[0]), float(counted[-1]), None, n, missing=missing)
+    place, coverage = _interval_place(n)
+    return Summary(
+        median, float(counted[place]), float(counted[-1 - place]), coverage, n, _outliers(given, median), missing
+    )
+
+
+def paired_ratio(a: ArrayLike, b: ArrayLike) -> Summary:
+    """The ratio a/b of repeats that belong together by their place: what they share of the noise cancels.
+
+    Parameters
+    ----------
+    a, b : equally many values. Where one is NaN, or both are 0, the pair counts as missing.
+
+    Raises
+    ------
+    ValueError
+        The lengths differ.
+    """
+    numerator, denominator = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+    if numerator.shape != denominator.shape:
+        raise ValueError(f"{numerator.size} values cannot be paired with {denominator.size}")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return summary(numerator / denominator)
+
+
+def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
+    """How y grows with x: least squares through the medians on logarithmic axes.
+
+    The interval is Student's of the slope. It measures how far the medians scatter about one power law, be it by noise
+    or because the growth is no power law, and so serves clocks and counters alike: a counter that follows a power law
+    exactly has an interval without width.
+
+    Parameters
+    ----------
+    samples : {x: repeats of y there}; NaN among the repeats do not count, and an x without any is left out
+    """
+    medians = {float(x): _median(values) for x, values in samples.items()}
+    medians = {x: y for x, y in sorted(medians.items()) if math.isfinite(x) and math.isfinite(y)}
+    usable = {x: y for x, y in medians.items() if x > 0.0 and y > 0.0}
+    dropped = tuple(x for x in medians if x not in usable)
+    n = len(usable)
+    if n < 2:
+        return Exponent(math.nan, math.nan, math.nan, math.nan, 1.0 if n else math.nan, n, dropped)
+    x, y = np.array(list(usable)), np.array(list(usable.values()))
+    log_x, log_y = np.log(x), np.log(y)
+    range_factor = float(x[-1] / x[0])
+    if np.ptp(log_y) < _CONSTANT:  # constants have no correlation, but the power 0 explains them wholly
+        end = 0.0 if n > 2 else math.nan
+        return Exponent(0.0, end, end, 1.0, range_factor, n, dropped)
+    fit = stats.linregress(log_x, log_y)
+    slope = float(fit.slope)
+    half = float(stats.t.ppf((1.0 + CONFIDENCE) / 2.0, n - 2) * fit.stderr) if n > 2 else math.nan
+    return Exponent(slope, slope - half, slope + half, float(fit.rvalue**2), range_factor, n, dropped)
+
+
+def geometric_mean(values: ArrayLike) -> float:
+    """The mean of ratios: it makes no difference which of the two is the numerator.
+
+    Raises
+    ------
+    ValueError
+        There is no value, or one that is not above 0 or not finite.
+    """
+    given = np.asarray(values, dtype=float)
+    if given.size == 0 or not np.all(np.isfinite(given) & (given > 0.0)):
+        raise ValueError("a geometric mean needs finite numbers above 0")
+    return float(stats.gmean(given, axis=None))
+
+
+@lru_cache(maxsize=256)
+def _interval_place(n: int) -> tuple[int, float]:
+    """The place k of the order statistics x[k] and x[n - 1 - k] that bound the median, and their coverage."""
+    # P(fewer than k + 1 of n values lie below the median) is binomial; both sides may miss half of 5 %
+    place = max(0, int(stats.binom.ppf((1.0 - CONFIDENCE) / 2.0, n, 0.5)) - 1)
+    return place, float(1.0 - 2.0 * stats.binom.cdf(place, n, 0.5))
+
+
+def _median(values: Sequence[float]) -> float:
+    counted = np.array([value for value in values if not math.isnan(value)])
+    return float(np.median(counted)) if counted.size else math.nan
+
+
+def _outliers(values: NDArray[np.float64], median: float) -> tuple[int, ...]:
+    with np.errstate(invalid="ignore"):
+        deviations = np.abs(values - median)
+    # scipy's median_abs_deviation takes ten times as long as all the rest
+    noise = float(np.median(deviations[~np.isnan(deviations)])) * _SCALED if math.isfinite(median) else math.inf
+    limit = max(OUTLIER_BEYOND * noise, NOISY_ABOVE * abs(median))
+    return tuple(np.flatnonzero(deviations > limit).tolist())
