@@ -1,0 +1,100 @@
+"""Watches a stepped run from outside its clocks: hits, contacts, errors, and a log of the hits if asked for.
+
+With a response, a hit is a contact that was answered. Without (`none`), a hit is the onset of touching: the first of
+the consecutive frames that see a pair touch.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.arrays import Flags, Ints, Pairs
+from harness.measure.conservation import Conservation
+from harness.motion.hits import HitLog
+from harness.motion.kinematics import Flight
+from harness.narrowphase.penetration import Penetration
+from harness.scene.scene import Scene
+
+
+class Observer:
+    """Counts what the frames of a run show.
+
+    Parameters
+    ----------
+    scene : Scene
+    flight : Flight being stepped
+    penetration : measure the depth of overlaps (spheres and hulls only)
+    traced : keep every hit in `log`
+    """
+
+    def __init__(self, scene: Scene, flight: Flight, *, penetration: bool, traced: bool) -> None:
+        self.pair_hits = self.pair_contacts = self.wall_hits = 0
+        self.max_penetration = 0.0
+        self.log = HitLog() if traced else None
+        self.conservation = Conservation(scene.bodies)
+        self._flight = flight
+        self._half = scene.box.half
+        self._outside = np.zeros(len(scene.bodies), np.bool_)
+        self._penetration = Penetration(scene) if penetration else None
+
+    @property
+    def escaped(self) -> int:
+        """Bodies whose centre was outside the box in some frame."""
+        return int(np.count_nonzero(self._outside))
+
+    def frame(self, time: float, pairs: Pairs, hits: Flags, walls: Ints | Flags) -> None:
+        """Take note of one frame.
+
+        Parameters
+        ----------
+        time : s
+        pairs : (k, 2) int array, touching
+        hits : (k,) bool array, which of them count as hits
+        walls : (n, 6) int or bool array, how often which body hit which wall
+        """
+        if len(pairs):
+            count = int(np.count_nonzero(hits))
+            self.pair_hits += count
+            self.pair_contacts += len(pairs) - count
+            if self._penetration is not None:
+                deepest = self._penetration.deepest(pairs, self._flight.positions, self._flight.quaternions)
+                self.max_penetration = max(self.max_penetration, deepest)
+            if self.log is not None:
+                self.log.add_pairs(time, pairs[hits])
+        wall_hits = int(walls.sum())
+        if wall_hits:
+            self.wall_hits += wall_hits
+            if self.log is not None:
+                self.log.add_walls(time, walls)
+        self._outside |= (np.abs(self._flight.positions) > self._half).any(axis=1)
+        self.conservation.observe(self._flight.velocities)
+
+
+class Folds:
+    """Tells which walls the folded paths have met since the frame before."""
+
+    def __init__(self, flight: Flight) -> None:
+        self._flight = flight
+        self._before = np.zeros((len(flight.positions), 6), np.int64)
+
+    def by(self, time: float) -> Ints:
+        """(n, 6) int array: how often which wall, up to the frame at `time` (s)."""
+        folds = self._flight.folds(time)
+        new = folds - self._before
+        self._before = folds
+        return new
+
+
+class Onsets:
+    """Tells which touching pairs did not touch in the frame before."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._before = np.empty(0, np.int64)
+
+    def of(self, pairs: Pairs) -> Flags:
+        """(k,) bool array for the (k, 2) pairs of the next frame."""
+        numbers = pairs[:, 0] * self._count + pairs[:, 1]
+        new = np.isin(numbers, self._before, assume_unique=True, invert=True)
+        self._before = numbers
+        return new
