@@ -1,0 +1,1 @@
+"""The results database: writing it (`database`) and turning it into tables (`tables`)."""

@@ -1,0 +1,272 @@
+"""Writing measurements: the sweeping process, and nobody else, adds to the results file.
+
+Every method is one transaction. Measurements are added, never changed or removed; what an experiment lists and what
+became of its claims follow its newest sweep.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import datetime, timezone
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from harness.errors import InputError
+from harness.store.connection import open_for_writing, told
+from harness.store.lock import SweepLock
+from harness.store.records import PointRow, Status, VerdictKind, VerdictRow
+
+
+class Database:
+    """The results file, open for writing by this process alone: a child forked meanwhile must leave it alone.
+
+    Use `Database.open`; a context manager.
+    """
+
+    def __init__(self, path: Path, connection: sqlite3.Connection, lock: SweepLock) -> None:
+        self.path = path
+        self._connection = connection
+        self._lock = lock
+
+    @classmethod
+    def open(cls, path: str | Path, create: bool = True) -> Database:
+        """Open the results file, or make it where `create` allows.
+
+        Raises
+        ------
+        InputError
+            The file is missing, damaged, another program's, of another schema version, in a place that cannot be
+            written to, or in use by another sweep. It is left as it was.
+        """
+        path = Path(path)
+        if not os.path.exists(path):
+            if not create:
+                raise InputError(f"{path}: no such file; `harness sweep` makes it")
+            try:
+                path.parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise InputError(f"{path}: its folder cannot be made: {error.strerror}") from error
+        elif not path.is_file():
+            raise InputError(f"{path}: is no file; give a file with --db")
+        lock = SweepLock(path)
+        try:
+            return cls(path, open_for_writing(path), lock)
+        except BaseException:
+            lock.release()
+            raise
+
+    def close(self) -> None:
+        """Close the file and let other sweeps in."""
+        self._connection.close()
+        self._lock.release()
+
+    def __enter__(self) -> Database:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def begin_sweep(
+        self, command: str, commit: str | None, version: str, machine: Mapping[str, Any], packages: Mapping[str, str]
+    ) -> int:
+        """Note that a sweep begins, and return its number.
+
+        Parameters
+        ----------
+        command : the command line that repeats it
+        commit : of the repository, where there is one
+        version : of harness
+        machine : facts; the same `fingerprint` among them, or else the same facts, mean the same machine
+        packages : {name: version}
+        """
+        facts = _json(machine)
+        fingerprint = str(machine.get("fingerprint") or hashlib.sha256(facts.encode()).hexdigest())
+        with self._transaction() as connection:
+            connection.execute(
+                "INSERT INTO machine (fingerprint, facts) VALUES (?, ?) ON CONFLICT (fingerprint) DO NOTHING",
+                (fingerprint, facts),
+            )
+            return _row_id(
+                connection.execute(
+                    "INSERT INTO sweep (started, command, commit_id, version, machine, packages) "
+                    "SELECT ?, ?, ?, ?, id, ? FROM machine WHERE fingerprint = ?",
+                    (_now(), _text(command), commit, version, _json(packages), fingerprint),
+                )
+            )
+
+    def finish_sweep(self, sweep: int) -> None:
+        """Note that a sweep came to its end."""
+        with self._transaction() as connection:
+            connection.execute("UPDATE sweep SET finished = ? WHERE id = ?", (_now(), sweep))
+
+    def list_experiment(
+        self,
+        sweep: int,
+        name: str,
+        title: str,
+        question: str | None,
+        source: str,
+        specification: Mapping[str, Any],
+        points: Sequence[PointRow],
+    ) -> int:
+        """Say what an experiment consists of now, in order, and return its number.
+
+        Takes the place of its earlier listing; the runs of points that left stay. A point that several experiments
+        share is stored once, one that is listed twice is listed at its first place.
+        """
+        with self._transaction() as connection:
+            connection.execute(
+                "INSERT INTO experiment (name, title, question, source, specification, sweep) "
+                "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (name) DO UPDATE "
+                "SET title = excluded.title, question = excluded.question, "
+                "source = excluded.source, specification = excluded.specification, sweep = excluded.sweep",
+                (name, title, question, source, _json(specification), sweep),
+            )
+            (experiment,) = connection.execute("SELECT id FROM experiment WHERE name = ?", (name,)).fetchone()
+            connection.execute("DELETE FROM experiment_point WHERE experiment = ?", (experiment,))
+            connection.executemany(
+                "INSERT INTO point (key, parameters, plan) VALUES (?, ?, ?) "
+                "ON CONFLICT (key) DO UPDATE SET parameters = excluded.parameters, "
+                "plan = CASE excluded.plan WHEN '{}' THEN plan ELSE excluded.plan END",
+                ((point.key, _json(point.parameters), _json(point.plan)) for point in points),
+            )
+            connection.executemany(
+                "INSERT INTO experiment_point (experiment, point, place) SELECT ?, id, ? FROM point WHERE key = ? "
+                "ON CONFLICT (experiment, point) DO NOTHING",
+                ((experiment, place, point.key) for place, point in enumerate(points)),
+            )
+            _show_leaves(connection)
+            return int(experiment)
+
+    def done(self, keys: Iterable[str]) -> dict[str, dict[int, str]]:
+        """What is measured already: for each of the keys {repeat: status} of its newest runs, {} where none is."""
+        found: dict[str, dict[int, str]] = {key: {} for key in keys}
+        with told(self.path):
+            rows = self._connection.execute(
+                "SELECT point.key, repeat, status FROM current_run JOIN point ON point.id = current_run.point "
+                "WHERE point.key IN (SELECT value FROM json_each(?))",
+                (json.dumps(list(found)),),
+            )
+            for key, repeat, status in rows:
+                found[key][repeat] = status
+        return found
+
+    def add_run(
+        self,
+        sweep: int,
+        key: str,
+        repeat: int,
+        status: Status,
+        reason: str | None,
+        stderr: str | None,
+        metrics: Mapping[str, tuple[float, str]],
+        timing_grade: bool,
+        started: datetime | None = None,
+        plan: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Keep one run; it is on the disk when this returns.
+
+        Parameters
+        ----------
+        key : of a point that was listed
+        reason, stderr : why it is not ok, in a sentence, and the tail of what the run printed
+        metrics : {name: (value, unit)}. An infinite value is kept as it is; one that is not a number as a row without a
+            value, so that it can be told from a metric that was not reported.
+        timing_grade : whether its clocks may be compared with others
+        started : with its time zone
+        plan : the pipeline that the run was made of, which the point has from now on
+
+        Raises
+        ------
+        KeyError
+            The point was never listed.
+        """
+        begun = started.astimezone(timezone.utc).isoformat(timespec="milliseconds") if started else None
+        with self._transaction() as connection:
+            point = connection.execute("SELECT id FROM point WHERE key = ?", (key,)).fetchone()
+            if point is None:
+                raise KeyError(key)
+            if plan is not None:
+                connection.execute("UPDATE point SET plan = ? WHERE id = ?", (_json(plan), point[0]))
+            run = _row_id(
+                connection.execute(
+                    "INSERT INTO run (point, repeat, sweep, status, reason, stderr, started, timing_grade) "
+                    "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                    (point[0], repeat, sweep, status, _text(reason), _text(stderr), begun, int(timing_grade)),
+                )
+            )
+            connection.executemany(
+                "INSERT INTO metric (run, name, value, unit) VALUES (?, ?, ?, ?)",  # SQLite makes NaN NULL
+                ((run, name, float(value), unit) for name, (value, unit) in metrics.items()),
+            )
+
+    def add_verdicts(self, sweep: int, experiment: int, kind: VerdictKind, rows: Sequence[VerdictRow]) -> None:
+        """Keep what became of an experiment's expectations or claims, in order; a later call in a sweep replaces it."""
+        with self._transaction() as connection:
+            connection.execute(f"DELETE FROM {kind} WHERE experiment = ? AND sweep = ?", (experiment, sweep))
+            connection.executemany(
+                f"INSERT INTO {kind} (experiment, place, sweep, criterion, verdict, statement, detail) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?)",
+                (
+                    (experiment, place, sweep, _json(row.criterion), row.verdict, row.statement, _json(row.detail))
+                    for place, row in enumerate(rows)
+                ),
+            )
+
+    @contextmanager
+    def _transaction(self) -> Iterator[sqlite3.Connection]:
+        connection = self._connection
+        with told(self.path):
+            connection.execute("BEGIN IMMEDIATE")
+            try:
+                yield connection
+                connection.execute("COMMIT")
+            except BaseException:
+                if connection.in_transaction:  # a full disk has ended it already
+                    connection.execute("ROLLBACK")
+                raise
+
+
+def _show_leaves(connection: sqlite3.Connection) -> None:
+    """Make the view `runs` anew where it lacks a leaf: every run ever made, with a column a leaf. Leaves are words."""
+    leaves = [
+        leaf
+        for (leaf,) in connection.execute(
+            "SELECT leaf.key FROM point, json_each(point.parameters) AS leaf "
+            "GROUP BY leaf.key ORDER BY min(point.id), min(leaf.id)"
+        )
+    ]
+    shown = {column for _, column, *_ in connection.execute("PRAGMA table_info(runs)")}
+    if shown and shown.issuperset(leaves):
+        return
+    columns = ["run.id AS run", "point.key AS point", "repeat", "sweep", "status", "reason", "started", "timing_grade"]
+    columns += [f"json_extract(parameters, '$.{leaf}') AS \"{leaf}\"" for leaf in leaves]
+    connection.execute("DROP VIEW IF EXISTS runs")
+    connection.execute(f"CREATE VIEW runs AS SELECT {', '.join(columns)} FROM run JOIN point ON point.id = run.point")
+
+
+def _row_id(cursor: sqlite3.Cursor) -> int:
+    assert cursor.lastrowid is not None
+    return cursor.lastrowid
+
+
+def _json(value: Any) -> str:
+    """JSON text as the standard has it; a number that is none is an error of the caller."""
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def _text(text: str | None) -> str | None:
+    """Text that can be stored, whatever bytes a run printed."""
+    return None if text is None else text.encode("utf-8", "replace").decode()
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).isoformat(timespec="seconds")

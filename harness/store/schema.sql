@@ -1,0 +1,110 @@
+-- The results database. Measurements (run, metric, event, frame) are only ever added; a point that is measured again gets
+-- further runs, and `current_run` shows the newest of each repeat. JSON columns hold JSON text.
+
+CREATE TABLE machine (
+    id          INTEGER PRIMARY KEY,
+    fingerprint TEXT NOT NULL UNIQUE,
+    facts       TEXT NOT NULL               -- JSON
+);
+
+CREATE TABLE sweep (
+    id        INTEGER PRIMARY KEY,
+    started   TEXT NOT NULL,                -- ISO 8601, UTC
+    finished  TEXT,                         -- NULL while it goes on, and for ever when it was killed
+    command   TEXT NOT NULL,
+    commit_id TEXT,
+    version   TEXT NOT NULL,                -- of harness
+    machine   INTEGER NOT NULL REFERENCES machine,
+    packages  TEXT NOT NULL                 -- JSON, {name: version}
+);
+
+CREATE TABLE experiment (
+    id            INTEGER PRIMARY KEY,
+    name          TEXT NOT NULL UNIQUE,
+    title         TEXT NOT NULL,
+    question      TEXT,
+    source        TEXT NOT NULL,            -- the YAML as it was written
+    specification TEXT NOT NULL,            -- JSON, {expect, claims, published, report, swept, measure}
+    sweep         INTEGER NOT NULL REFERENCES sweep     -- the newest that listed it
+);
+
+CREATE TABLE point (
+    id         INTEGER PRIMARY KEY,
+    key        TEXT NOT NULL UNIQUE,        -- hash of all that the measurement depends on
+    parameters TEXT NOT NULL,               -- JSON, {leaf: value}, derived ones included
+    plan       TEXT NOT NULL                -- JSON, {stages: [{name, kept, why}], warnings: [text]}; {} before its first run
+);
+
+-- The points an experiment has now; replaced whenever it is swept.
+CREATE TABLE experiment_point (
+    experiment INTEGER NOT NULL REFERENCES experiment,
+    point      INTEGER NOT NULL REFERENCES point,
+    place      INTEGER NOT NULL,
+    PRIMARY KEY (experiment, place),
+    UNIQUE (experiment, point)
+);
+
+CREATE TABLE run (
+    id           INTEGER PRIMARY KEY,
+    point        INTEGER NOT NULL REFERENCES point,
+    repeat       INTEGER NOT NULL CHECK (repeat >= 0),
+    sweep        INTEGER NOT NULL REFERENCES sweep,
+    status       TEXT NOT NULL CHECK (status IN ('ok', 'failed', 'timeout', 'memory', 'crashed', 'rejected')),
+    reason       TEXT,
+    stderr       TEXT,                      -- its tail
+    started      TEXT,                      -- ISO 8601, UTC
+    timing_grade INTEGER NOT NULL CHECK (timing_grade IN (0, 1)),
+    UNIQUE (point, repeat, sweep)
+);
+
+CREATE TABLE metric (
+    run   INTEGER NOT NULL REFERENCES run,
+    name  TEXT NOT NULL,
+    value REAL,                             -- NULL: measured, and not a number
+    unit  TEXT NOT NULL,
+    PRIMARY KEY (run, name)
+);
+
+CREATE TABLE event (
+    run    INTEGER NOT NULL REFERENCES run,
+    place  INTEGER NOT NULL,
+    time   REAL NOT NULL,                   -- s
+    kind   TEXT NOT NULL CHECK (kind IN ('pair', 'wall')),
+    first  INTEGER NOT NULL,
+    second INTEGER,                         -- NULL for a wall
+    wall   TEXT,                            -- NULL for a pair
+    PRIMARY KEY (run, place)
+) WITHOUT ROWID;
+
+CREATE TABLE frame (
+    run   INTEGER NOT NULL REFERENCES run,
+    place INTEGER NOT NULL,
+    time  REAL NOT NULL,                    -- s
+    data  BLOB NOT NULL,
+    PRIMARY KEY (run, place)
+);
+
+CREATE TABLE expectation (
+    experiment INTEGER NOT NULL REFERENCES experiment,
+    place      INTEGER NOT NULL,
+    sweep      INTEGER NOT NULL REFERENCES sweep,
+    criterion  TEXT NOT NULL,               -- JSON, the row of the experiment file
+    verdict    TEXT NOT NULL CHECK (verdict IN ('holds', 'fails', 'undecided')),
+    statement  TEXT NOT NULL,
+    detail     TEXT NOT NULL,               -- JSON
+    PRIMARY KEY (experiment, sweep, place)
+);
+
+CREATE TABLE claim (
+    experiment INTEGER NOT NULL REFERENCES experiment,
+    place      INTEGER NOT NULL,
+    sweep      INTEGER NOT NULL REFERENCES sweep,
+    criterion  TEXT NOT NULL,
+    verdict    TEXT NOT NULL CHECK (verdict IN ('holds', 'fails', 'undecided')),
+    statement  TEXT NOT NULL,
+    detail     TEXT NOT NULL,
+    PRIMARY KEY (experiment, sweep, place)
+);
+
+CREATE VIEW current_run AS
+    SELECT * FROM run WHERE id IN (SELECT max(id) FROM run GROUP BY point, repeat);

@@ -1,0 +1,182 @@
+"""Reading results: the file turned into a table of runs and into records. Nothing else reads the file.
+
+Readers cannot write and never wait for a sweep: each sees the last finished run of its moment.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sqlite3
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from harness.store.connection import open_for_reading, told
+from harness.store.records import ExperimentRecord, PointRow, RunRecord, SweepRecord, VerdictKind, VerdictRow
+
+_FIXED = ("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade")
+
+
+def runs(path: str | Path, experiments: Iterable[str] | None = None) -> pd.DataFrame:
+    """The run table: a row for every experiment, point it lists now, and repeat.
+
+    Parameters
+    ----------
+    path : the results file
+    experiments : names of those to read; all without
+
+    Returns
+    -------
+    DataFrame
+        As `run_table` makes it, ordered by name, point and repeat. A repeat measured again shows its newest run.
+
+    Raises
+    ------
+    InputError
+        The file is missing, empty, damaged, another program's, or of another schema version.
+    """
+    return run_table(run_records(path, experiments))
+
+
+def run_table(records: Iterable[RunRecord]) -> pd.DataFrame:
+    """Runs as a table.
+
+    Returns
+    -------
+    DataFrame
+        experiment, point, repeat, status, reason, sweep and timing_grade, a column a leaf or derived parameter, and a
+        float column a metric, NaN where a run does not report it. Leaves that are lists or mappings are their JSON
+        text, so that they can be grouped by.
+    """
+    records = list(records)
+    parameters = list(dict.fromkeys(leaf for record in records for leaf in record.parameters))
+    metrics = list(dict.fromkeys(name for record in records for name in record.metrics))
+    columns: dict[str, Any] = {name: [getattr(record, name) for record in records] for name in _FIXED}
+    columns |= {leaf: [_leaf(record.parameters.get(leaf)) for record in records] for leaf in parameters}
+    columns |= {
+        name: pd.Series([record.metrics.get(name, math.nan) for record in records], dtype=float) for name in metrics
+    }
+    table: pd.DataFrame = pd.DataFrame(columns).astype({"repeat": int, "sweep": int, "timing_grade": bool})
+    return table
+
+
+def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> list[RunRecord]:
+    """The rows of `runs` one by one; here a metric that is not a number differs from one that is not reported."""
+    with _reading(path) as connection:
+        chosen = _names(connection) if experiments is None else sorted(set(experiments))
+        rows = connection.execute(
+            "SELECT current_run.id, name, key, parameters, repeat, status, reason, current_run.sweep, timing_grade "
+            "FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
+            "JOIN point ON point.id = experiment_point.point JOIN current_run ON current_run.point = point.id "
+            "WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
+            (json.dumps(chosen),),
+        ).fetchall()
+        metrics: dict[int, dict[str, float]] = defaultdict(dict)
+        for run, name, value in connection.execute(
+            "SELECT run, name, value FROM metric WHERE run IN (SELECT value FROM json_each(?)) ORDER BY metric.rowid",
+            (json.dumps([row[0] for row in rows]),),
+        ):
+            metrics[run][name] = math.nan if value is None else value
+    points = {row[2]: json.loads(row[3]) for row in rows}
+    return [
+        RunRecord(name, key, repeat, status, reason, sweep, bool(timing_grade), points[key], metrics[run])
+        for run, name, key, _, repeat, status, reason, sweep, timing_grade in rows
+    ]
+
+
+def experiments(path: str | Path) -> list[ExperimentRecord]:
+    """Every experiment as it was last swept, by name.
+
+    A row of its `expect` or `claims` that the sweep did not come to judge is undecided, and says so.
+    """
+    with _reading(path) as connection:
+        known = {sweep.id: sweep for sweep in _sweeps(connection)}
+        records = []
+        for number, name, title, question, source, text, sweep in connection.execute(
+            "SELECT id, name, title, question, source, specification, sweep FROM experiment ORDER BY name"
+        ).fetchall():
+            specification = json.loads(text)
+            records.append(
+                ExperimentRecord(
+                    name=name,
+                    title=title,
+                    question=question,
+                    source=source,
+                    specification=specification,
+                    points=_points(connection, number),
+                    expectations=_verdicts(connection, "expectation", number, sweep, specification.get("expect", ())),
+                    claims=_verdicts(connection, "claim", number, sweep, specification.get("claims", ())),
+                    sweep=known[sweep],
+                )
+            )
+        return records
+
+
+def sweeps(path: str | Path) -> list[SweepRecord]:
+    """Every sweep, the oldest first."""
+    with _reading(path) as connection:
+        return _sweeps(connection)
+
+
+@contextmanager
+def _reading(path: str | Path) -> Iterator[sqlite3.Connection]:
+    path = Path(path)
+    connection = open_for_reading(path)
+    try:
+        with told(path):
+            connection.execute("BEGIN")  # one moment for all that is read
+            yield connection
+    finally:
+        connection.close()
+
+
+def _names(connection: sqlite3.Connection) -> list[str]:
+    return [name for (name,) in connection.execute("SELECT name FROM experiment ORDER BY name")]
+
+
+def _points(connection: sqlite3.Connection, experiment: int) -> tuple[PointRow, ...]:
+    return tuple(
+        PointRow(key, json.loads(parameters), json.loads(plan))
+        for key, parameters, plan in connection.execute(
+            "SELECT key, parameters, plan FROM experiment_point JOIN point ON point.id = experiment_point.point "
+            "WHERE experiment = ? ORDER BY place",
+            (experiment,),
+        )
+    )
+
+
+def _verdicts(
+    connection: sqlite3.Connection, kind: VerdictKind, experiment: int, sweep: int, criteria: Iterable[dict[str, Any]]
+) -> tuple[VerdictRow, ...]:
+    judged = tuple(
+        VerdictRow(json.loads(criterion), verdict, statement, json.loads(detail))
+        for criterion, verdict, statement, detail in connection.execute(
+            f"SELECT criterion, verdict, statement, detail FROM {kind} "
+            "WHERE experiment = ? AND sweep = ? ORDER BY place",
+            (experiment, sweep),
+        )
+    )
+    if judged:
+        return judged
+    return tuple(VerdictRow(row, "undecided", "not judged yet: the sweep has not come to its end") for row in criteria)
+
+
+def _sweeps(connection: sqlite3.Connection) -> list[SweepRecord]:
+    return [
+        SweepRecord(
+            number, started, finished, command, commit, version, fingerprint, json.loads(facts), json.loads(packages)
+        )
+        for number, started, finished, command, commit, version, fingerprint, facts, packages in connection.execute(
+            "SELECT sweep.id, started, finished, command, commit_id, version, fingerprint, facts, packages "
+            "FROM sweep JOIN machine ON machine.id = sweep.machine ORDER BY sweep.id"
+        )
+    ]
+
+
+def _leaf(value: Any) -> Any:
+    return json.dumps(value) if isinstance(value, list | dict) else value
