@@ -1,0 +1,140 @@
+"""One run in this process: build the scene, plan it, fly it, and say what came out."""
+
+from __future__ import annotations
+
+import resource
+import sys
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from harness.arrays import Floats, Pairs
+from harness.backends import registry
+from harness.backends.protocol import approximations
+from harness.experiment.experiment import Point
+from harness.measure.clocks import Clock
+from harness.motion.hits import Trace
+from harness.motion.plan import Plan, make_plan
+from harness.motion.response import Response
+from harness.motion.stepped import fly_stepped
+from harness.runner.setting import build_scene
+from harness.scene.bodies import Bodies
+from harness.scene.box import Box
+from harness.scene.hull import convex_hull
+from harness.scene.launch import place
+from harness.scene.mesh import Mesh
+from harness.scene.scene import Scene, Shape
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run that came to its end has measured."""
+
+    metrics: dict[str, float]
+    plan: Plan
+    trace: Trace | None = None
+
+
+def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, traced: bool = False) -> Result:
+    """Run a point once, in this process.
+
+    Parameters
+    ----------
+    point : Point
+    mesh : the mesh its scene names
+    memory : B that the scene may need
+    traced : keep every hit
+
+    Raises
+    ------
+    PlacementError, SceneSizeError, InputError
+        If the point cannot be run as it is declared.
+    """
+    warm_up()
+    clock = Clock("setup_seconds")
+    scene = build_scene(point, mesh, memory)
+    backend = registry.create(point.engine.backend) if len(scene.bodies) > 1 else None
+    plan = plan_of(point, scene)
+    if backend is not None:
+        backend.load(scene)
+    clock.lap("setup_seconds")
+    outcome = fly_stepped(
+        scene,
+        plan,
+        backend,
+        frames=point.motion.frames,
+        dt=point.motion.dt,
+        response=point.motion.response,
+        restitution=point.motion.restitution,
+        traced=traced,
+    )
+    metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
+    return Result(metrics, plan, outcome.trace)
+
+
+def plan_of(point: Point, scene: Scene) -> Plan:
+    """The plan of a point, whose scene is at hand.
+
+    Raises
+    ------
+    InputError
+        If the point forces a stage that cannot be forced, or its backend is missing.
+    """
+    approximated = None
+    if len(scene.bodies) > 1:
+        approximated = approximations(registry.create(point.engine.backend)).get(scene.shape)
+    return make_plan(
+        scene,
+        backend=point.engine.backend,
+        algorithm=point.engine.algorithm,
+        response=point.motion.response,
+        approximated=approximated,
+        forced=point.engine.stages,
+    )
+
+
+@cache
+def warm_up() -> None:
+    """Compile every kernel, or load it from numba's cache, so that no clock of a run sees it."""
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(12)
+    hull = convex_hull(corners)
+    mesh = Mesh("tetrahedron", hull.vertices, hull.faces, hull, "", watertight=True, convex=True)
+    bodies = Bodies(
+        positions=np.array([[-0.6, 0, 0], [0.6, 0, 0]]),
+        velocities=np.array([[1.0, 1, 1], [-1, -1, -1]]),
+        quaternions=np.tile([1.0, 0, 0, 0], (2, 1)),
+        spins=np.ones((2, 3)),
+        sizes=np.ones(2),
+        masses=np.ones(2),
+    )
+    shapes: tuple[Shape, ...] = ("sphere", "hull")
+    responses: tuple[Response, ...] = ("reflect", "elastic", "none")
+    place(np.full(2, 0.5), Box(np.full(3, 1.2)), np.random.default_rng(0), overlap=False)
+    for shape in shapes:
+        scene = Scene(shape, mesh, bodies, Box(np.full(3, 1.2)))
+        for response in responses:
+            plan = make_plan(scene, backend="", algorithm="native", response=response)
+            fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
+
+
+class _Meeting:
+    """A detector for `warm_up`: the two bodies always touch."""
+
+    name = "meeting"
+    shapes: tuple[Shape, ...] = ("sphere", "hull")
+
+    def tolerance(self, shape: Shape) -> float:
+        return 0.0
+
+    def load(self, scene: Scene) -> None:
+        pass
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        return np.array([[0, 1]])
+
+
+def _peak_memory() -> float:
+    """B, largest resident memory of this process so far."""
+    unit = 1 if sys.platform == "darwin" else 1024
+    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
