@@ -1,0 +1,42 @@
+"""Print the hits of one run: of the first point, where a file sweeps.
+
+Stepped runs report the hits that were answered, at the time of their frame; with `response: none`, the onset of each
+contact, at the first frame that sees it.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from harness.cli.prepare import add_override_argument, overrides_of, prepare
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("path", metavar="PATH", help="an experiment file")
+    add_override_argument(parser)
+    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    import json
+    import sys
+
+    from harness.runner.sweep import RunError, trace
+    from harness.scene.box import WALLS
+
+    experiments, meshes = prepare([arguments.path], overrides_of(arguments))
+    try:
+        traced = trace(experiments[0], meshes)
+    except RunError as failure:
+        print(f"{arguments.path}: the run failed ({failure.report.status}): {failure.report.reason}", file=sys.stderr)
+        return 1
+    if arguments.json:
+        json.dump(traced.to_json(), sys.stdout, allow_nan=False)
+        print()
+        return 0
+    for time, (i, j), wall in zip(traced.times.tolist(), traced.bodies.tolist(), traced.walls.tolist(), strict=True):
+        what = f"bodies {i} and {j}" if wall < 0 else f"body {i} and wall {WALLS[wall]}"
+        print(f"{time:.9g} s  {what}")
+    counters = "  ".join(f"{name} {value}" for name, value in traced.counters.items())
+    print(f"{len(traced.times)} hits in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
+    return 0
