@@ -31,9 +31,9 @@ def load(path: str | Path, **set: object) -> Experiment:
     harness.errors.InputError
         With every problem of the file and its meshes at once.
     """
-    from harness.experiment.load import load
+    from harness.runner.preparation import prepare
 
-    return load(path, set)
+    return prepare([path], set)[0][0]
 
 
 def run(experiment: Experiment) -> pd.DataFrame:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.prepare import add_override_argument, overrides_of, prepare
+from harness.cli.overrides import add_override_argument, overrides_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,6 +19,7 @@ def run(arguments: argparse.Namespace) -> int:
     from dataclasses import asdict
 
     from harness.runner.execute import plan_of
+    from harness.runner.preparation import prepare
     from harness.runner.servers import mesh_of
     from harness.runner.setting import build_scene
 

@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from harness.cli.prepare import add_override_argument, overrides_of, prepare
+from harness.cli.overrides import add_override_argument, overrides_of
 
 if TYPE_CHECKING:
     from harness.runner.sweep import Job, Summary, Watcher
@@ -29,6 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
+    from harness.runner.preparation import prepare
     from harness.runner.sweep import sweep
     from harness.store.database import Database
 

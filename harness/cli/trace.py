@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.prepare import add_override_argument, overrides_of, prepare
+from harness.cli.overrides import add_override_argument, overrides_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,6 +21,7 @@ def run(arguments: argparse.Namespace) -> int:
     import json
     import sys
 
+    from harness.runner.preparation import prepare
     from harness.runner.sweep import RunError, trace
     from harness.scene.box import WALLS
 

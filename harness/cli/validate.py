@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.cli.prepare import add_override_argument, examine, overrides_of
+from harness.cli.overrides import add_override_argument, overrides_of
 from harness.errors import InputError
 
 
@@ -16,6 +16,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """A line on standard output for every sound experiment; the faults of the others are raised together."""
+    from harness.runner.preparation import examine
+
     experiments, _, problems = examine(arguments.paths, overrides_of(arguments))
     for experiment in experiments:
         points, runs = len(experiment.points), experiment.runs

@@ -1,19 +1,20 @@
-"""What every command that reads experiments does first: load them, open their meshes, and say all that is wrong."""
+"""Before any run: load experiments, open their meshes in one limited child, and say all that is wrong at once."""
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
 
+from harness.backends.registry import names
 from harness.errors import InputError, Problem
-
-if TYPE_CHECKING:
-    from os import PathLike
-    from pathlib import Path
-
-    from harness.experiment.experiment import Experiment
-    from harness.scene.mesh import Mesh
+from harness.experiment.experiment import Experiment
+from harness.experiment.load import find_experiments, load
+from harness.experiment.messages import listed, near, shown
+from harness.measure.metrics import METRICS
+from harness.scene.mesh import Mesh
+from harness.scene.mesh_child import open_meshes
 
 
 class Prepared(NamedTuple):
@@ -22,33 +23,6 @@ class Prepared(NamedTuple):
     experiments: list[Experiment]
     meshes: dict[Path, Mesh]
     problems: list[Problem]
-
-
-def add_override_argument(parser: argparse.ArgumentParser) -> None:
-    """Give a command `--set leaf=value`."""
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="LEAF=VALUE",
-        help="a leaf in the place of the file's, such as count=50, dt=1/120 or count=[5, 10]; can be given again",
-    )
-
-
-def overrides_of(arguments: argparse.Namespace) -> dict[str, str]:
-    """The leaves that `--set` gives, each with its text."""
-    overrides: dict[str, str] = {}
-    problems = []
-    for text in arguments.overrides:
-        leaf, equals, value = text.partition("=")
-        if equals and leaf.strip():
-            overrides[leaf.strip()] = value
-        else:
-            problems.append(Problem(f"--set {text}: must be LEAF=VALUE, such as count=50"))
-    if problems:
-        raise InputError(problems)
-    return overrides
 
 
 def prepare(
@@ -75,8 +49,6 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     InputError
         If a path names no experiment.
     """
-    from harness.experiment.load import find_experiments, load
-
     loaded: list[Experiment] = []
     problems: list[Problem] = []
     for path in find_experiments(paths):
@@ -98,8 +70,6 @@ def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], d
     paths = list(dict.fromkeys(path for experiment in experiments for path in experiment.mesh_paths.values()))
     if not paths:
         return {}, {}
-    from harness.scene.mesh_child import open_meshes
-
     opened = open_meshes(paths)
     meshes = {path: mesh for path, mesh in opened.items() if not isinstance(mesh, str)}
     return meshes, {path: message for path, message in opened.items() if isinstance(message, str)}
@@ -123,10 +93,6 @@ def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Ite
 
 def _names(experiment: Experiment) -> Iterator[Problem]:
     """Names that only other rooms know: of metrics and of backends."""
-    from harness.backends.registry import names
-    from harness.experiment.messages import listed, near, shown
-    from harness.measure.metrics import METRICS
-
     metrics: list[tuple[tuple[str | int, ...], str]] = []
     for section, rows in (("expect", experiment.expect), ("claims", experiment.claims)):
         metrics += [((section, place, "metric"), row.metric) for place, row in enumerate(rows)]
