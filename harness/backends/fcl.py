@@ -1,33 +1,68 @@
-"""FCL through python-fcl: exact spheres, hulls and triangle meshes; the broad phase is ours."""
+"""FCL through python-fcl: exact spheres, hulls and meshes. Which pairs it is asked about is up to the algorithm."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import chain, combinations, compress, repeat
+from typing import Literal
 
 import fcl
 import numpy as np
 
 from harness.arrays import Floats, Pairs
+from harness.broadphase.grid import Grid
+from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.narrowphase.fcl_objects import FclObjects
+from harness.narrowphase.fcl_tree import FclTree
 from harness.scene.scene import Scene, Shape
+
+Algorithm = Literal["brute-force", "grid", "tree"]
 
 
 class Fcl:
-    """Brute force: every pair is put to FCL at every call."""
+    """Every pair, or only those whose bounding spheres touch, put to FCL.
+
+    Parameters
+    ----------
+    algorithm : {"brute-force", "grid", "tree"}
+        `brute-force` puts every pair to FCL at every call. `grid` and `tree` first find the pairs whose bounding
+        spheres touch; for spheres that is the answer.
+    """
 
     name = "fcl"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+
+    def __init__(self, algorithm: Algorithm = "brute-force") -> None:
+        self._algorithm = algorithm
+        self._request = fcl.CollisionRequest()
 
     def tolerance(self, shape: Shape) -> float:
         """Measured against exact rationals; the rare worst case for hulls."""
         return {"sphere": 1e-15, "hull": 1e-11, "mesh": 1e-14}[shape]
 
     def load(self, scene: Scene) -> None:
-        self._bodies = FclObjects(scene)
-        self._request = fcl.CollisionRequest()
         self.counters = {"pair_tests": 0, "narrow_tests": 0}
+        if self._algorithm == "brute-force":
+            self._bodies = FclObjects(scene)
+            self._find: Callable[[Floats, Floats], Pairs] = self._brute_force
+            return
+        sizes = scene.bodies.sizes
+        if self._algorithm == "tree":
+            self._broad: Grid | FclTree = FclTree(scene)
+        elif sizes.min(initial=1.0) == sizes.max(initial=1.0):
+            self._broad = Grid(scene.bodies.radii, scene.box)
+        else:
+            self._broad = HierarchicalGrid(scene.bodies.radii, scene.box)
+        if scene.shape == "sphere":
+            self._find = self._spheres
+        else:
+            self._bodies = FclObjects(scene)
+            self._find = self._culled
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        return self._find(positions, quaternions)
+
+    def _brute_force(self, positions: Floats, quaternions: Floats) -> Pairs:
         self._bodies.place(positions, quaternions)
         objects = self._bodies.objects
         count = len(objects)
@@ -42,3 +77,19 @@ class Fcl:
         self.counters["pair_tests"] += tests
         self.counters["narrow_tests"] += tests
         return np.array(touching, np.int64).reshape(-1, 2)
+
+    def _spheres(self, positions: Floats, quaternions: Floats) -> Pairs:
+        found = self._broad.close_pairs(positions)
+        self.counters["pair_tests"] = self.counters["narrow_tests"] = self._broad.pair_tests
+        return found
+
+    def _culled(self, positions: Floats, quaternions: Floats) -> Pairs:
+        close = self._broad.close_pairs(positions)
+        self.counters["pair_tests"] = self._broad.pair_tests
+        self.counters["narrow_tests"] += len(close)
+        if not len(close):
+            return close
+        self._bodies.place(positions, quaternions, np.unique(close))
+        objects, result = self._bodies.objects, fcl.CollisionResult()
+        touching = [bool(fcl.collide(objects[i], objects[j], self._request, result)) for i, j in close.tolist()]
+        return close[touching]

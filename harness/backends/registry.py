@@ -20,8 +20,13 @@ def names() -> list[str]:
     return sorted(_declared())
 
 
-def create(name: str) -> Backend:
+def create(name: str, algorithm: str = "native") -> Backend:
     """A new backend, not loaded yet.
+
+    Parameters
+    ----------
+    name : as in `engine.backend`
+    algorithm : given to the backend, unless it is its own (`native`)
 
     Raises
     ------
@@ -33,7 +38,8 @@ def create(name: str) -> Backend:
         raise InputError(f'there is no backend "{name}"; there are {", ".join(sorted(declared))}')
     try:
         with silence():
-            backend: Backend = declared[name].load()()
+            made = declared[name].load()
+            backend: Backend = made() if algorithm == "native" else made(algorithm)
     except ImportError as error:
         raise InputError(f'backend "{name}" cannot be used: {error}') from error
     return backend

@@ -5,6 +5,7 @@ arithmetic, so that all of them return the same pairs and not merely nearly the 
 first makes no difference to it.
 """
 
+from math import sqrt
 from typing import Protocol
 
 import numpy as np
@@ -50,8 +51,11 @@ class BroadPhase(Protocol):
 
 @kernel
 def touching(dx: float, dy: float, dz: float, reach: float) -> bool:
-    """Whether spheres touch whose centres are (dx, dy, dz) apart, m, and whose radii sum to `reach`, m."""
-    return dx * dx + dy * dy + dz * dz <= reach * reach
+    """Whether spheres touch whose centres are (dx, dy, dz) apart, m, and whose radii sum to `reach`, m.
+
+    The distance itself is compared, not its square: FCL does so, and agrees to the bit.
+    """
+    return sqrt(dx * dx + dy * dy + dz * dz) <= reach
 
 
 @kernel

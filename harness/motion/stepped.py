@@ -100,7 +100,8 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:
             return touching
 
         return spheres
-    vertices, cull = scene.mesh.hull.vertices, plan.keeps("wall_cull")
+    # a copy, since numba compiles anew for an array that cannot be written to, as those of a mesh may be
+    vertices, cull = scene.mesh.hull.vertices.copy(), plan.keeps("wall_cull")
 
     def hulls(flight: Flight) -> Flags:
         hulls_at_walls(flight.positions, flight.quaternions, sizes, vertices, half, cull, touching)

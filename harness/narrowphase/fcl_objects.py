@@ -9,7 +9,7 @@ from __future__ import annotations
 import fcl
 import numpy as np
 
-from harness.arrays import Floats
+from harness.arrays import Floats, Ints
 from harness.narrowphase.units import unit_of
 from harness.scene.hull import Hull
 from harness.scene.mesh import Mesh
@@ -17,35 +17,39 @@ from harness.scene.scene import Scene
 
 
 class FclObjects:
-    """One FCL object a body; bodies of the same size share their geometry.
+    """One FCL object a body.
 
     Parameters
     ----------
     scene : Scene
+    shared : whether bodies of the same size share one geometry
 
     Attributes
     ----------
     objects : list of n fcl.CollisionObject
+    geometries : list of n fcl.CollisionGeometry, theirs
     unit : m; FCL's lengths are multiples of it
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, *, shared: bool = True) -> None:
         self.unit = unit_of(scene.bodies.sizes)
         self._turning = scene.shape != "sphere"
-        geometries: dict[float, fcl.CollisionGeometry] = {}
-        self.objects: list[fcl.CollisionObject] = []
-        for size in (scene.bodies.sizes / self.unit).tolist():
-            if size not in geometries:
-                geometries[size] = _geometry(scene, size)
-            self.objects.append(fcl.CollisionObject(geometries[size]))
+        sizes = (scene.bodies.sizes / self.unit).tolist()
+        if shared:
+            by_size = {size: _geometry(scene, size) for size in dict.fromkeys(sizes)}
+            self.geometries = [by_size[size] for size in sizes]
+        else:
+            self.geometries = [_geometry(scene, size) for size in sizes]
+        self.objects = [fcl.CollisionObject(geometry) for geometry in self.geometries]
 
-    def place(self, positions: Floats, quaternions: Floats) -> None:
-        """Move all objects.
+    def place(self, positions: Floats, quaternions: Floats, bodies: Ints | None = None) -> None:
+        """Move objects.
 
         Parameters
         ----------
         positions : (n, 3) float array, m
         quaternions : (n, 4) float array, unit, w x y z; not looked at for spheres
+        bodies : (k,) int array, those to move; all of them without
 
         Raises
         ------
@@ -54,13 +58,16 @@ class FclObjects:
         """
         if not (np.isfinite(positions).all() and np.isfinite(quaternions).all()):
             raise ValueError("a pose is not finite")
+        objects = self.objects
+        if bodies is not None:
+            objects, positions, quaternions = [objects[i] for i in bodies], positions[bodies], quaternions[bodies]
         places = positions / self.unit
         if self._turning:
-            for placed, place, quaternion in zip(self.objects, places, quaternions, strict=True):
+            for placed, place, quaternion in zip(objects, places, quaternions, strict=True):
                 placed.setQuatRotation(quaternion)
                 placed.setTranslation(place)
         else:
-            for placed, place in zip(self.objects, places, strict=True):
+            for placed, place in zip(objects, places, strict=True):
                 placed.setTranslation(place)
 
     def place_one(self, body: int, position: Floats, quaternion: Floats) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from harness.arrays import Floats, Pairs
 from harness.backends import registry
 from harness.backends.protocol import approximations
+from harness.broadphase.grid import Grid
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Trace
@@ -54,7 +55,7 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     warm_up()
     clock = Clock("setup_seconds")
     scene = build_scene(point, mesh, memory)
-    backend = registry.create(point.engine.backend) if len(scene.bodies) > 1 else None
+    backend = registry.create(point.engine.backend, point.engine.algorithm) if len(scene.bodies) > 1 else None
     plan = plan_of(point, scene)
     if backend is not None:
         backend.load(scene)
@@ -110,9 +111,11 @@ def warm_up() -> None:
     )
     shapes: tuple[Shape, ...] = ("sphere", "hull")
     responses: tuple[Response, ...] = ("reflect", "elastic", "none")
-    place(np.full(2, 0.5), Box(np.full(3, 1.2)), np.random.default_rng(0), overlap=False)
+    box = Box(np.full(3, 1.2))
+    place(bodies.radii, box, np.random.default_rng(0), overlap=False)
+    Grid(bodies.radii, box).close_pairs(bodies.positions)
     for shape in shapes:
-        scene = Scene(shape, mesh, bodies, Box(np.full(3, 1.2)))
+        scene = Scene(shape, mesh, bodies, box)
         for response in responses:
             plan = make_plan(scene, backend="", algorithm="native", response=response)
             fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)

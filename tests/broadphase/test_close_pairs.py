@@ -28,7 +28,7 @@ def reference(positions, radii):
     """The definition, in numpy, without any of the code under test."""
     dx, dy, dz = (positions[:, None] - positions[None]).transpose(2, 0, 1)
     reach = radii[:, None] + radii[None]
-    return np.argwhere(np.triu(dx * dx + dy * dy + dz * dz <= reach * reach, 1))
+    return np.argwhere(np.triu(np.sqrt(dx * dx + dy * dy + dz * dz) <= reach, 1))
 
 
 def assert_exact(positions, radii, half=(1.0, 1.0, 1.0)):
@@ -206,9 +206,9 @@ def test_returned_pairs_and_given_arrays_belong_to_the_caller():
 def last_touching(x, reach):
     """The largest float that touches x, going up."""
     y = x + reach
-    while (y - x) * (y - x) <= reach * reach:
+    while np.sqrt((y - x) * (y - x)) <= reach:
         y = np.nextafter(y, np.inf)
-    while (y - x) * (y - x) > reach * reach:
+    while np.sqrt((y - x) * (y - x)) > reach:
         y = np.nextafter(y, -np.inf)
     return y
 
