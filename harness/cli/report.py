@@ -1,0 +1,21 @@
+"""`harness report`: turn the results into pages."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which results, and where the pages go."""
+    parser.add_argument("--db", metavar="FILE", default="results/results.db", help="the results (default: %(default)s)")
+    parser.add_argument(
+        "--out", metavar="DIR", default="results/report", help="folder to write the pages into (default: %(default)s)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the pages, and say where the first one is."""
+    from harness.report.site import write_report
+
+    print(write_report(arguments.db, arguments.out))
+    return 0

@@ -1,0 +1,83 @@
+"""Who is fastest, and by how much: ratios of paired repeats, and growth exponents of every series."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from harness.measure.statistics import Exponent, Summary, fit_exponent, paired_ratio
+from harness.report.series import Arrangement, Cell, Series
+from harness.report.words import more_is_better
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One series at one x. `behind` is how many times worse than the best it is, None where nothing can be paired."""
+
+    series: Series
+    cell: Cell
+    median: float
+    behind: Summary | None
+    best: bool
+
+    @property
+    def level(self) -> bool:
+        """Whether it is the best, or not to be told from it: the ratio's interval holds 1."""
+        return self.best or (self.behind is not None and self.behind.low <= 1.0)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The exponent with which a metric of a series grows over x."""
+
+    series: Series
+    metric: str
+    exponent: Exponent
+
+
+def rank(series: Sequence[Series], x: object, metric: str) -> list[Ranked]:
+    """The series that have the metric at x, best first.
+
+    Left out: runs that disagree with the reference, because a faster answer that is wrong is not faster.
+    """
+    found = []
+    for line in series:
+        cell = line.at(x)
+        if cell is not None and math.isfinite(cell.median(metric)) and not cell.disagrees:
+            found.append((line, cell, cell.median(metric)))
+    found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])
+    if not found:
+        return []
+    best = found[0][1]
+    return [
+        Ranked(line, cell, median, None if cell is best else times_worse(cell, best, metric), cell is best)
+        for line, cell, median in found
+    ]
+
+
+def times_worse(cell: Cell, best: Cell, metric: str) -> Summary | None:
+    """How many times the metric of `cell` is worse than that of `best`, over the repeats that both have."""
+    mine, theirs = cell.by_repeat(metric), best.by_repeat(metric)
+    shared = sorted(mine.keys() & theirs.keys())
+    if not shared:
+        return None
+    a, b = [mine[repeat] for repeat in shared], [theirs[repeat] for repeat in shared]
+    ratio = paired_ratio(b, a) if more_is_better(metric) else paired_ratio(a, b)
+    return ratio if ratio.n else None
+
+
+def growth(arrangement: Arrangement, metrics: Sequence[str]) -> list[Growth]:
+    """The exponents of every metric and series that has it at two values of x or more; nothing where x is no number."""
+    if not arrangement.numeric or arrangement.x is None:
+        return []
+    found = []
+    for metric in metrics:
+        for line in arrangement.series:
+            samples: dict[float, list[float]] = {}
+            for cell, x in zip(line.cells, line.x, strict=True):
+                samples.setdefault(float(x), []).extend(cell.values(metric))
+            exponent = fit_exponent({x: values for x, values in samples.items() if values})
+            if exponent.n >= 2:
+                found.append(Growth(line, metric, exponent))
+    return found

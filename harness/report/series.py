@@ -1,0 +1,209 @@
+"""An experiment's points arranged for reading: one leaf along x, one series for every combination of the others.
+
+A series is what a figure draws as a line and a table as a row. Where there are too many for one picture they are split
+into panels by a leaf of the scene.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from harness.measure.statistics import Summary, summary
+from harness.report.words import setting
+from harness.store.records import ExperimentRecord, PointRow
+
+MOST_IN_A_PANEL = 6
+DEFAULT_METRICS = ("pair_seconds", "box_seconds")
+# What a method is, as against the scene it is put to: panels are split by the scene first.
+_METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """One point of an experiment with all its runs, failed ones included; `runs` has a row a run, by repeat."""
+
+    point: PointRow
+    runs: pd.DataFrame
+
+    @cached_property
+    def good(self) -> pd.DataFrame:
+        """The runs that came to their end."""
+        ended: pd.DataFrame = self.runs[self.runs["status"] == "ok"]
+        return ended
+
+    def values(self, metric: str) -> npt.NDArray[np.float64]:
+        """The metric of every good run that reports it, by repeat."""
+        if metric not in self.good.columns:
+            return np.empty(0)
+        values = np.asarray(self.good[metric], dtype=float)
+        finite: npt.NDArray[np.float64] = values[np.isfinite(values)]
+        return finite
+
+    def by_repeat(self, metric: str) -> dict[int, float]:
+        """The metric of every good run that reports it, to be paired with another point's."""
+        if metric not in self.good.columns:
+            return {}
+        pairs = zip(self.good["repeat"], self.good[metric], strict=True)
+        return {int(repeat): float(value) for repeat, value in pairs if math.isfinite(value)}
+
+    def summary(self, metric: str) -> Summary | None:
+        """Median and interval of the metric, None where no good run reports it."""
+        if metric not in self._summaries:
+            values = self.values(metric)
+            self._summaries[metric] = summary(values) if len(values) else None
+        return self._summaries[metric]
+
+    def median(self, metric: str) -> float:
+        """Median of the metric, nan where no good run reports it."""
+        found = self.summary(metric)
+        return found.median if found else math.nan
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether a run's hits differ from the reference's: such a point is shown, and never ranked."""
+        return any(bool((self.values(metric) > 0).any()) for metric in ("missed_hits", "extra_hits"))
+
+    @cached_property
+    def _summaries(self) -> dict[str, Summary | None]:
+        return {}
+
+
+@dataclass(frozen=True)
+class Series:
+    """Cells that differ in x only. `style` numbers the colour and marker, the same on all of a page."""
+
+    label: str
+    style: int
+    panel: str
+    cells: tuple[Cell, ...]
+    x: tuple[Any, ...]
+
+    def at(self, x: object) -> Cell | None:
+        """The cell at a value of x."""
+        wanted = _hashable(x)
+        return next((cell for cell, value in zip(self.cells, self.x, strict=True) if _hashable(value) == wanted), None)
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """An experiment's series over its x leaf; x is None where nothing is swept."""
+
+    x: str | None
+    x_values: tuple[Any, ...]
+    series: tuple[Series, ...]
+    panel_leaf: str | None
+    metrics: tuple[str, ...]
+
+    @property
+    def numeric(self) -> bool:
+        """Whether x is a number, so that distances along it mean something."""
+        return all(_is_number(value) for value in self.x_values)
+
+    @property
+    def panels(self) -> tuple[str, ...]:
+        """Names of the panels, in order; one empty name where the series were not split."""
+        return tuple(dict.fromkeys(series.panel for series in self.series))
+
+    @property
+    def cells(self) -> list[Cell]:
+        """All cells, series by series."""
+        return [cell for series in self.series for cell in series.cells]
+
+
+def arrange(record: ExperimentRecord, runs: pd.DataFrame) -> Arrangement:
+    """Arrange an experiment's points and runs (rows of the run table that belong to it)."""
+    by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
+    nothing = runs.iloc[:0]
+    cells = [Cell(point, by_point.get(point.key, nothing)) for point in record.points]
+    report: Mapping[str, Any] = record.specification.get("report") or {}
+    swept = [leaf for leaf in record.specification.get("swept") or () if _spread(cells, leaf) > 1]
+    x = _x_leaf(cells, swept, report.get("x"))
+    others = [leaf for leaf in swept if leaf != x and not _follows(cells, leaf, x)]
+    panel_leaf = _panel_leaf(cells, others)
+    lines: dict[str, list[Cell]] = {}
+    for cell in cells:
+        lines.setdefault(_key(cell, others), []).append(cell)
+    names = [leaf for leaf in others if leaf != panel_leaf]
+    styles: dict[str, int] = {}
+    series = []
+    for members in lines.values():
+        first = members[0].point.parameters
+        label = _label(first, names)
+        members = sorted(members, key=lambda cell: _order(cell.point.parameters.get(x))) if x else members
+        series.append(
+            Series(
+                label,
+                styles.setdefault(label, len(styles)),
+                setting(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
+                tuple(members),
+                tuple(cell.point.parameters.get(x) for cell in members) if x else tuple(None for _ in members),
+            )
+        )
+    values = {_hashable(cell.point.parameters.get(x)): cell.point.parameters.get(x) for cell in cells} if x else {}
+    y = report.get("y") or DEFAULT_METRICS
+    return Arrangement(
+        x,
+        tuple(sorted(values.values(), key=_order)),
+        tuple(series),
+        panel_leaf,
+        (y,) if isinstance(y, str) else tuple(y),
+    )
+
+
+def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> str | None:
+    if wanted and _spread(cells, wanted) > 0:
+        return wanted
+    numeric = [leaf for leaf in swept if all(_is_number(cell.point.parameters.get(leaf)) for cell in cells)]
+    # where no leaf is a number, what the method is tells more as series than along x
+    return next(iter(numeric or [leaf for leaf in swept if leaf not in _METHOD] or swept), None)
+
+
+def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
+    if len({_key(cell, others) for cell in cells}) <= MOST_IN_A_PANEL or len(others) < 2:
+        return None
+    scene = [leaf for leaf in others if leaf not in _METHOD] or list(others)
+    return min(scene, key=lambda leaf: (_spread(cells, leaf) > 8, -_spread(cells, leaf)))
+
+
+def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
+    """The swept leaves' values; where none is left, what the method is."""
+    named = leaves or [leaf for leaf in ("backend", "algorithm") if leaf in parameters]
+    return "\u00a0· ".join(setting(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
+
+
+def _follows(cells: Sequence[Cell], leaf: str, x: str | None) -> bool:
+    """Whether x determines the leaf, as `faces` does the mesh: it is then no series of its own."""
+    if x is None:
+        return False
+    return len({_key(cell, (x, leaf)) for cell in cells}) == _spread(cells, x)
+
+
+def _spread(cells: Sequence[Cell], leaf: str) -> int:
+    """How many values the leaf takes."""
+    return len({_key(cell, (leaf,)) for cell in cells if leaf in cell.point.parameters})
+
+
+def _key(cell: Cell, leaves: Sequence[str]) -> str:
+    return json.dumps([cell.point.parameters.get(leaf) for leaf in leaves], sort_keys=True)
+
+
+def _hashable(value: object) -> object:
+    return value if isinstance(value, int | float | str | None) else json.dumps(value, sort_keys=True)
+
+
+def _order(value: object) -> tuple[int, float]:
+    """Numbers by size; anything else keeps the order of the file (sorting is stable)."""
+    return (0, float(value)) if isinstance(value, int | float) and not isinstance(value, bool) else (1, 0.0)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,324 @@
+"""The tables of an experiment's page, from its arrangement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from harness.measure.statistics import CONFIDENCE, ENOUGH_RANGE
+from harness.report.published import Recovered, Row, metrics_of
+from harness.report.quantity import exponent_text, leaf_text, number, plural, scale
+from harness.report.ranking import Growth, Ranked, rank
+from harness.report.series import Arrangement, Cell, Series
+from harness.report.table import Column, Entry, Group, Table, counted, failure, measured, plain, words
+from harness.report.words import leaf_title, metric_title, metric_unit, setting
+
+# The homework's columns, in its order.
+_TESTS = (
+    "frames", "frames_per_second", "pair_tests", "pair_seconds_per_frame", "box_tests", "box_seconds_per_frame",
+)  # fmt: skip
+_CLOCKS = (
+    "pair_seconds", "box_seconds", "response_seconds", "run_seconds", "run_seconds_elapsed", "setup_seconds",
+    "simulated_per_second",
+)  # fmt: skip
+_OTHERS = (
+    "narrow_tests", "predictions", "events", "pair_hits", "pair_contacts", "box_hits", "missed_hits", "extra_hits",
+    "time_error", "position_error", "energy_drift", "momentum_drift", "max_penetration", "escaped", "peak_memory",
+)  # fmt: skip
+_MOST_ROWS = 100
+SLOW_ELAPSED = 1.2
+# times worse than the best, from which each tint begins
+_TINTS = ((100.0, "t5"), (20.0, "t4"), (5.0, "t3"), (2.0, "t2"), (1.2, "t1"))
+
+
+def comparisons(arrangement: Arrangement) -> list[Table]:
+    """A table a metric: series down, x across, the best of each panel bold. None where there is only one series."""
+    if len(arrangement.series) < 2:
+        return []
+    measured_ones = [
+        metric for metric in arrangement.metrics if any(cell.summary(metric) for cell in arrangement.cells)
+    ]
+    return [_comparison(arrangement, metric) for metric in measured_ones]
+
+
+def tests_table(arrangement: Arrangement) -> Table | None:
+    """Tests and their times, as the homework tabulates them."""
+    how = _medians(arrangement)
+    note = f"{how[:1].upper()}{how[1:]}. Counts are exact. Times are CPU time."
+    return _points_table(arrangement, "Tests and times", note, _TESTS)
+
+
+def clocks_table(arrangement: Arrangement) -> Table | None:
+    """CPU seconds of every phase, with the elapsed time of the run beside it."""
+    note = (
+        f"CPU seconds of each phase of a whole run, {_medians(arrangement)}; beside them the elapsed time of the run. "
+        f"Elapsed over CPU above {SLOW_ELAPSED:g} is flagged: the machine "
+        "was busy with something else."
+    )
+    table = _points_table(arrangement, "CPU and elapsed time", note, _CLOCKS)
+    if table is None or not any(cell.summary("run_seconds_elapsed") for cell in arrangement.cells):
+        return table
+    cells = arrangement.cells[:_MOST_ROWS]
+    rows = tuple((*row, _elapsed(cell)) for row, cell in zip(table.rows, cells, strict=True))
+    return Table(table.name, table.note, (*table.columns, Column("elapsed / CPU")), rows)
+
+
+def others_table(arrangement: Arrangement) -> Table | None:
+    """Everything else that was counted: hits, errors, memory."""
+    return _points_table(arrangement, "Hits, errors and memory", "Medians over the repeats.", _OTHERS)
+
+
+def elapsed_ratio(cell: Cell) -> float:
+    """Elapsed over CPU time of a point's runs, nan where it is not known."""
+    cpu = cell.median("run_seconds")
+    return cell.median("run_seconds_elapsed") / cpu if cpu > 0 else math.nan
+
+
+def exponents_table(growths: Sequence[Growth], arrangement: Arrangement) -> Table:
+    """Exponents with their intervals, or why there are none."""
+    several, rows = len(arrangement.series) > 1, []
+    metrics = {entry.metric for entry in growths}
+    for entry in growths:
+        found = entry.exponent
+        row = [words(entry.series.label, entry.series.style)] if several else []
+        row += _panel_entry(arrangement, entry.series.cells[0])
+        row += [words(entry.metric)] if len(metrics) > 1 or not several else []
+        if found.enough:
+            row.append(Entry(exponent_text(found.value), sort=plain(found.value)))
+            known = math.isfinite(found.low)
+            interval = f"{exponent_text(found.low)} to {exponent_text(found.high)}" if known else "–"
+            row.append(Entry(interval, sort=plain(found.low)))
+            # rounded down: only an exact power law reads 1.000
+            row.append(Entry(f"{math.floor(found.r2 * 1000 + 1e-6) / 1000:.3f}", sort=plain(found.r2)))
+        else:
+            why = f"not enough range: {number(found.range_factor)}× in x, {plural(found.n, 'value')}"
+            row += [Entry("–"), Entry(why, numeric=False), Entry("–")]
+        rows.append(tuple(row))
+    columns = [Column("Series", numeric=False)] if several else []
+    columns += _panel_column(arrangement)
+    columns += [Column("Metric", numeric=False)] if len(metrics) > 1 or not several else []
+    columns += [Column("b"), Column(f"{CONFIDENCE * 100:.0f} % interval"), Column("R²")]
+    subject = metrics.pop() if len(metrics) == 1 else "metric"
+    note = (
+        f"{subject} ≈ c · {arrangement.x}ᵇ, fitted through the medians. An exponent needs three values of x and a "
+        f"factor of {number(ENOUGH_RANGE)} between the outermost."
+    )
+    return Table("Growth exponents", note, tuple(columns), tuple(rows))
+
+
+def failures_table(arrangement: Arrangement) -> Table | None:
+    """Every run that did not come to its end, with its reason; equal ones of a point together."""
+    rows = []
+    for series in arrangement.series:
+        for cell, x in zip(series.cells, series.x, strict=True):
+            bad = cell.runs[cell.runs["status"] != "ok"]
+            if bad.empty:
+                continue
+            for (status, reason), group in bad.groupby(["status", "reason"], dropna=False, sort=True):
+                text = str(reason) if isinstance(reason, str) and reason else "no reason was recorded"
+                repeats = ", ".join(str(int(repeat)) for repeat in sorted(group["repeat"]))
+                rows.append(
+                    (
+                        words(place_of(arrangement, series, x), series.style),
+                        words("", flag=str(status)),
+                        Entry(text, numeric=False, mark="long"),
+                        words(repeats),
+                    )
+                )
+    if not rows:
+        return None
+    columns = (
+        Column("Point", numeric=False),
+        Column("Ended", numeric=False),
+        Column("Reason", numeric=False),
+        Column("Repeats", numeric=False),
+    )
+    return Table(
+        "Runs that failed", "Each is kept as a result of its own; it counts in no median.", columns, tuple(rows)
+    )
+
+
+def published_table(rows: Sequence[Row], source: str) -> Table:
+    """Each published number, ours, and ours over theirs."""
+    metrics = metrics_of(rows)
+    units = {
+        metric: scale(
+            [value for row in rows for value in (row.numbers.get(metric, 0.0), row.ours(metric))], metric_unit(metric)
+        )
+        for metric in metrics
+    }
+    several = len({row.series for row in rows if row.cell}) > 1
+    columns = [Column("Row", numeric=False)] + ([Column("Ours is", numeric=False)] if several else [])
+    groups = [Group("", len(columns))]
+    for metric in metrics:
+        columns += [Column("theirs", units[metric].symbol), Column("ours", units[metric].symbol), Column("ratio")]
+        groups.append(Group(metric_title(metric), 3))
+    lines = []
+    for row in rows:
+        line = [words(row.name)]
+        if several:
+            line.append(words(row.series or "not measured", row.style if row.cell else None))
+        for metric in metrics:
+            theirs = row.numbers.get(metric)
+            ours = row.ours(metric)
+            ratio = ours / theirs if theirs else math.nan
+            line.append(Entry(units[metric].text(theirs), sort=plain(theirs)))
+            line.append(
+                Entry(units[metric].text(ours), sort=plain(ours))
+                if row.cell and not math.isnan(ours)
+                else failure(row.cell)
+            )
+            line.append(Entry("–" if math.isnan(ratio) else f"{number(ratio)}×", sort=plain(ratio)))
+        lines.append(tuple(line))
+    note = f"Theirs: {source}. Ours: medians. Ratio: ours over theirs."
+    return Table("Published, beside ours", note, tuple(columns), tuple(lines), tuple(groups))
+
+
+def recovered_table(found: Sequence[Recovered]) -> Table:
+    """The bodies and frames that the published test counts imply, beside those printed."""
+    rows = []
+    for entry in found:
+        whole = number(round(entry.bodies)) if entry.whole else f"{entry.bodies:.2f}"
+        rows.append(
+            (
+                words(entry.row.name),
+                counted(entry.row.numbers["pair_tests"]),
+                counted(entry.row.numbers["box_tests"]),
+                Entry(whole, flag="" if entry.bodies_agree else "≠", sort=plain(entry.bodies)),
+                counted(entry.printed) if entry.printed is not None else Entry("–"),
+                Entry(number(round(entry.frames, 1)), sort=plain(entry.frames)),
+                Entry(
+                    number(entry.frames_timed), flag="" if entry.frames_agree else "≠", sort=plain(entry.frames_timed)
+                ),
+            )
+        )
+    columns = (
+        Column("Row", numeric=False),
+        Column("pair tests P"),
+        Column("wall tests W"),
+        Column("bodies recovered"),
+        Column("bodies printed"),
+        Column("frames recovered"),
+        Column("frames by printed rate"),
+    )
+    note = (
+        "N = 2 P / (W / 6) + 1 bodies and W / (6 N) frames are what the two test counts imply where every pair and "
+        "all six walls are tested each frame; frames by the printed rate are frames per second × the simulated time. "
+        "≠ marks what contradicts the print."
+    )
+    return Table("What the published counts imply", note, columns, tuple(rows))
+
+
+def place_of(arrangement: Arrangement, series: Series, x: object) -> str:
+    """A point in words: its series, its panel and its x."""
+    parts = [series.label] if len(arrangement.series) > 1 else []
+    parts += [series.panel] if series.panel else []
+    parts += [setting(arrangement.x, x)] if arrangement.x else []
+    return ", ".join(parts) or series.label
+
+
+def _comparison(arrangement: Arrangement, metric: str) -> Table:
+    xs = arrangement.x_values or (None,)
+    unit = scale([cell.median(metric) for cell in arrangement.cells], metric_unit(metric))
+    rows = []
+    for panel in arrangement.panels:
+        lines = [series for series in arrangement.series if series.panel == panel]
+        ranks = [{entry.series.label: entry for entry in rank(lines, x, metric)} for x in xs]
+        for series in lines:
+            row = [words(series.label, series.style), *_panel_entry(arrangement, series.cells[0])]
+            row += [
+                measured(series.at(x), metric, unit, _mark(ranked.get(series.label)))
+                for x, ranked in zip(xs, ranks, strict=True)
+            ]
+            rows.append(tuple(row))
+    columns = [Column("Series", numeric=False), *_panel_column(arrangement)]
+    if arrangement.x is None:
+        columns.append(Column(metric, unit.symbol))
+    else:
+        columns += [Column(setting(arrangement.x, x)) for x in xs]
+    units = f", {unit.symbol}" if unit.symbol else ""
+    note = (
+        f"{metric}{units}, {_medians(arrangement)}. Bold: best, or not to be told from it. "
+        "Tint: times worse than the best."
+    )
+    if any(cell.disagrees for cell in arrangement.cells):
+        note += " Struck through: disagrees with the reference, and is not ranked."
+    return Table(_heading(metric), note, tuple(columns), tuple(rows))
+
+
+def _panel_column(arrangement: Arrangement) -> list[Column]:
+    return [Column(arrangement.panel_leaf, numeric=False)] if arrangement.panel_leaf else []
+
+
+def _panel_entry(arrangement: Arrangement, cell: Cell) -> list[Entry]:
+    if arrangement.panel_leaf is None:
+        return []
+    value = cell.point.parameters.get(arrangement.panel_leaf)
+    return [Entry(leaf_text(value), numeric=False, mark="keep", sort=plain(value))]
+
+
+def _mark(entry: Ranked | None) -> str:
+    if entry is None or entry.level:
+        return "best" if entry else ""
+    behind = entry.behind.median if entry.behind else 1.0
+    return next((name for from_, name in _TINTS if behind >= from_), "")
+
+
+def _points_table(arrangement: Arrangement, name: str, note: str, metrics: Sequence[str]) -> Table | None:
+    cells = arrangement.cells
+    shown = [metric for metric in metrics if any(cell.summary(metric) for cell in cells)]
+    if not shown:
+        return None
+    units = {metric: scale([cell.median(metric) for cell in cells], metric_unit(metric)) for metric in shown}
+    several, x = len(arrangement.series) > 1, arrangement.x
+    columns = [Column("Series", numeric=False)] if several or x is None else []
+    columns += _panel_column(arrangement)
+    columns += [Column(leaf_title(x), numeric=arrangement.numeric)] if x else []
+    columns += [Column(_heading(metric), units[metric].symbol) for metric in shown]
+    rows = []
+    for series in arrangement.series:
+        for cell, value in zip(series.cells, series.x, strict=True):
+            row = [words(series.label, series.style)] if several or x is None else []
+            row += _panel_entry(arrangement, cell)
+            row += [_x_entry(value, arrangement.numeric)] if x else []
+            row += [measured(cell, metric, units[metric]) for metric in shown]
+            rows.append(tuple(row))
+    left = len(rows) - _MOST_ROWS
+    if left > 0:
+        note += f" The first {_MOST_ROWS} points; {number(left)} more are in the CSV file."
+    return Table(name, note, tuple(columns), tuple(rows[:_MOST_ROWS]))
+
+
+def _heading(metric: str) -> str:
+    title = metric_title(metric)
+    return f"{title[:1].upper()}{title[1:]}"
+
+
+def _x_entry(value: object, numeric: bool) -> Entry:
+    return Entry(leaf_text(value), numeric=numeric, sort=plain(value))
+
+
+def _elapsed(cell: Cell) -> Entry:
+    ratio = elapsed_ratio(cell)
+    if math.isnan(ratio):
+        return Entry("–")
+    return Entry(f"{ratio:.2f}", flag="busy" if ratio > SLOW_ELAPSED else "", sort=plain(ratio))
+
+
+def _medians(arrangement: Arrangement) -> str:
+    """What the numbers are, and what their intervals really cover."""
+    summaries = [
+        summary
+        for cell in arrangement.cells
+        for metric in (*arrangement.metrics, "run_seconds")
+        if (summary := cell.summary(metric)) is not None
+    ]
+    known = sorted(summary.coverage for summary in summaries if summary.coverage is not None)
+    if known:
+        low, high = f"{100 * known[0]:.0f}", f"{100 * known[-1]:.0f}"
+        return (
+            f"median ± half its interval ({low} %)" if low == high else f"median ± half its interval ({low}–{high} %)"
+        )
+    if any(summary.n > 1 for summary in summaries):
+        return "median ± half its range (too few repeats for an interval)"
+    return "one run a point, so no interval"

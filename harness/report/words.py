@@ -1,0 +1,86 @@
+"""What leaves and metrics are called on the pages."""
+
+from __future__ import annotations
+
+from harness.measure.metrics import METRICS
+from harness.report.quantity import leaf_text
+
+_LEAVES = {
+    "count": "number of bodies",
+    "faces": "faces of the mesh",
+    "hull_vertices": "vertices of the hull",
+    "packing": "packing (volume of spheres / volume of box)",
+    "box_side": "box side, m",
+    "box_ratio": "crowding (body size / box side)²",
+    "dt": "time step, s",
+    "size": "body size, m",
+    "speed": "speed, m/s",
+    "spin": "spin, rad/s",
+    "duration": "simulated time, s",
+    "tolerance": "tolerance, of body size",
+    "backend": "backend",
+    "algorithm": "algorithm",
+    "shape": "shape",
+    "mesh": "mesh",
+    "restitution": "restitution",
+    "response": "response",
+    "seed": "seed",
+}
+_METRICS = {
+    "frames": "frames",
+    "pair_tests": "object/object tests",
+    "narrow_tests": "object/object tests on the exact shape",
+    "box_tests": "object/wall tests",
+    "pair_hits": "object/object hits",
+    "pair_contacts": "object/object contacts left alone",
+    "box_hits": "object/wall hits",
+    "pair_seconds": "object/object test time",
+    "box_seconds": "object/wall test time",
+    "response_seconds": "response time",
+    "run_seconds": "run time",
+    "setup_seconds": "set-up time",
+    "pair_seconds_per_frame": "object/object test time a frame",
+    "box_seconds_per_frame": "object/wall test time a frame",
+    "frames_per_second": "frames per second",
+    "simulated_per_second": "simulated seconds per second",
+    "energy_drift": "energy drift",
+    "momentum_drift": "momentum drift",
+    "max_penetration": "deepest penetration, of body size",
+    "peak_memory": "peak memory",
+}
+# Leaves whose values explain themselves in a label; others are written "leaf value".
+_SELF_EVIDENT = ("backend", "algorithm", "mesh", "response")
+
+
+def metric_title(name: str) -> str:
+    """A metric in words: "object/object test time"."""
+    if name.endswith("_elapsed"):
+        return f"{metric_title(name.removesuffix('_elapsed'))}, elapsed"
+    return _METRICS.get(name, name.replace("_", " "))
+
+
+def metric_unit(name: str) -> str:
+    """The unit of a metric as it is written behind a number, "1" for none or a metric this version does not know."""
+    unit = METRICS[name].unit if name in METRICS else "1"
+    return unit.removeprefix("1") if unit != "1" else unit
+
+
+def is_clock(name: str) -> bool:
+    """Whether repeats of the metric vary, so that it has an interval."""
+    return name not in METRICS or METRICS[name].noisy
+
+
+def leaf_title(leaf: str) -> str:
+    """A leaf in words: "number of bodies"."""
+    return _LEAVES.get(leaf, leaf.replace("_", " "))
+
+
+def setting(leaf: str, value: object) -> str:
+    """One leaf and its value as a label: "fcl", "shape hull", "dt 1/60"."""
+    text = leaf_text(value)
+    return text if leaf in _SELF_EVIDENT else f"{leaf} {text}"
+
+
+def more_is_better(name: str) -> bool:
+    """Whether the larger of two values of the metric wins."""
+    return name.removesuffix("_elapsed").endswith("_per_second")
