@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from importlib.metadata import EntryPoint, entry_points
 
 from harness.backends.protocol import Backend
@@ -78,4 +79,10 @@ def silence() -> Iterator[None]:
 
 
 def _declared() -> dict[str, EntryPoint]:
+    return _declared_on(tuple(sys.path))
+
+
+@lru_cache(maxsize=8)
+def _declared_on(path: tuple[str, ...]) -> dict[str, EntryPoint]:
+    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend."""
     return {entry.name: entry for entry in entry_points(group=GROUP)}

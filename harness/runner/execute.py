@@ -15,10 +15,11 @@ from harness.backends.protocol import approximations
 from harness.broadphase.grid import Grid
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
-from harness.motion.hits import Trace
+from harness.motion.hits import Outcome, Trace
 from harness.motion.plan import Plan, make_plan
 from harness.motion.response import Response
 from harness.motion.stepped import fly_stepped
+from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
@@ -30,11 +31,12 @@ from harness.scene.scene import Scene, Shape
 
 @dataclass(frozen=True)
 class Result:
-    """What a run that came to its end has measured."""
+    """What a run that came to its end has measured, and in how many flights of its scene."""
 
     metrics: dict[str, float]
     plan: Plan
     trace: Trace | None = None
+    flights: int = 1
 
 
 def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, traced: bool = False) -> Result:
@@ -60,18 +62,22 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     if backend is not None:
         backend.load(scene)
     clock.lap("setup_seconds")
-    outcome = fly_stepped(
-        scene,
-        plan,
-        backend,
-        frames=point.motion.frames,
-        dt=point.motion.dt,
-        response=point.motion.response,
-        restitution=point.motion.restitution,
-        traced=traced,
-    )
+
+    def fly() -> Outcome:
+        return fly_stepped(
+            scene,
+            plan,
+            backend,
+            frames=point.motion.frames,
+            dt=point.motion.dt,
+            response=point.motion.response,
+            restitution=point.motion.restitution,
+            traced=traced,
+        )
+
+    outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
-    return Result(metrics, plan, outcome.trace)
+    return Result(metrics, plan, outcome.trace, flights)
 
 
 def plan_of(point: Point, scene: Scene) -> Plan:

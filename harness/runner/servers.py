@@ -16,14 +16,17 @@ from harness.runner.task import Report, Task
 from harness.scene.mesh import Mesh
 
 # One thread a run: threads of numerical libraries would make CPU time mean something else on every machine.
-_ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)
 
 
 class Servers:
-    """Runs points in isolated processes. A context: leaving it ends every process it started."""
+    """Runs tasks in isolated processes. A context: leaving it ends every process it started."""
 
     def __init__(self) -> None:
         self._servers: dict[str, _Server] = {}
+        self._broken: dict[str, Report] = {}
 
     def __enter__(self) -> Servers:
         return self
@@ -31,30 +34,51 @@ class Servers:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End every process."""
         for server in self._servers.values():
             server.close()
         self._servers.clear()
 
-    def run(self, experiment: Experiment, point: Point, meshes: Mapping[Path, Mesh], *, traced: bool = False) -> Report:
-        """Run a point once in a process of its own; it never raises for what the run does.
+    def run(self, task: Task, mesh: Mesh | None) -> Report:
+        """Run a task once in a process of its own; it never raises for what the run does.
 
         Parameters
         ----------
-        experiment : whose limits (`measure.timeout`, `measure.memory`) hold
-        point : one of its points
-        meshes : every mesh of the experiment, opened
-        traced : keep every hit
+        task : what to run
+        mesh : that it names
         """
-        mesh = mesh_of(experiment, point, meshes)
-        task = Task(point, mesh.digest if mesh else None, experiment.measure.timeout, experiment.measure.memory, traced)
-        backend = point.engine.backend
+        backend = task.point.engine.backend
+        if backend in self._broken:
+            return self._broken[backend]
         if backend not in self._servers:
-            self._servers[backend] = _Server(backend)
+            server = _Server(backend)
+            self._servers[backend] = server
+            broken = server.start(task.timeout)
+            if broken is not None:
+                self._servers.pop(backend).close()
+                self._broken[backend] = broken
+                return broken
         report = self._servers[backend].run(task, mesh)
         if report is None:
             self._servers.pop(backend).close()
             return Report("crashed", f'the server of backend "{backend}" ended unexpectedly')
         return report
+
+
+def task_of(
+    experiment: Experiment,
+    point: Point,
+    meshes: Mapping[Path, Mesh],
+    *,
+    traced: bool = False,
+    pinned: bool = False,
+) -> tuple[Task, Mesh | None]:
+    """A run of a point under the limits of its experiment, and the mesh that it needs."""
+    mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
+    return Task(point, mesh.digest if mesh else None, limits.timeout, limits.memory, traced, pinned), mesh
 
 
 def mesh_of(experiment: Experiment, point: Point, meshes: Mapping[Path, Mesh]) -> Mesh | None:
@@ -66,6 +90,7 @@ class _Server:
     """This side of one server process."""
 
     def __init__(self, backend: str) -> None:
+        self._backend = backend
         ours, theirs = socket.socketpair()
         with theirs:
             self._process = subprocess.Popen(
@@ -73,16 +98,35 @@ class _Server:
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 env=os.environ | _ONE_THREAD,
+                # what is sent to the sweep's whole group, as a terminal does, is for the sweep to answer
+                start_new_session=True,
             )
         self._channel: Connection = Connection(ours.detach())
         self._sent: set[str] = set()
-        self._ready = False
+
+    def start(self, timeout: float) -> Report | None:
+        """Wait until it is ready to run; a report where its backend keeps it from that.
+
+        Parameters
+        ----------
+        timeout : s that importing the backend may take
+        """
+        importing = f'importing backend "{self._backend}"'
+        try:
+            self._channel.recv()  # warm: compiling takes as long as it takes
+            if not self._channel.poll(timeout):
+                return Report("timeout", f"{importing} did not end within {timeout:g} s")
+            self._channel.recv()
+        except (EOFError, OSError):
+            self._process.wait()
+            code = self._process.returncode
+            how = f"signal {-code}" if code < 0 else f"exit code {code}"
+            return Report("crashed", f"{importing} ended its process with {how}")
+        return None
 
     def run(self, task: Task, mesh: Mesh | None) -> Report | None:
         """The report of a task; None if the server has died."""
         try:
-            if not self._ready:
-                self._ready = bool(self._channel.recv())
             if mesh is not None and mesh.digest not in self._sent:
                 self._channel.send(mesh)
                 self._sent.add(mesh.digest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -23,6 +24,7 @@ class Task:
     timeout : s of elapsed time
     memory : B that it may use
     traced : keep every hit
+    pinned : keep it on one core, where the system allows
     """
 
     point: Point
@@ -30,19 +32,28 @@ class Task:
     timeout: float
     memory: int
     traced: bool = False
+    pinned: bool = False
 
 
 @dataclass(frozen=True)
 class Report:
-    """How a run ended; metrics, plan and trace only if it was ok. `stderr` is the tail of what it printed."""
+    """How a run ended; metrics, plan and trace only if it was ok.
+
+    Parameters
+    ----------
+    status, reason : how it ended, and why, in a sentence, if not well
+    conditions : what it met: see `harness.measure.conditions`; and `flights`, how often the scene was flown
+    stderr : the tail of what it printed
+    """
 
     status: Status
     reason: str | None
-    stderr: str = ""
     metrics: dict[str, float] = field(default_factory=dict)
     plan: Plan | None = None
     trace: Trace | None = None
+    conditions: Mapping[str, float] = field(default_factory=dict)
+    stderr: str = ""
 
-    def with_stderr(self, stderr: str) -> Report:
-        """The same report with what the run printed."""
-        return replace(self, stderr=stderr)
+    def with_circumstances(self, stderr: str, conditions: Mapping[str, float]) -> Report:
+        """The same report with what the run printed and met."""
+        return replace(self, stderr=stderr, conditions={**self.conditions, **conditions})

@@ -87,18 +87,13 @@ class Database:
         machine : facts; the same `fingerprint` among them, or else the same facts, mean the same machine
         packages : {name: version}
         """
-        facts = _json(machine)
-        fingerprint = str(machine.get("fingerprint") or hashlib.sha256(facts.encode()).hexdigest())
         with self._transaction() as connection:
-            connection.execute(
-                "INSERT INTO machine (fingerprint, facts) VALUES (?, ?) ON CONFLICT (fingerprint) DO NOTHING",
-                (fingerprint, facts),
-            )
+            number = _machine(connection, machine)
             return _row_id(
                 connection.execute(
                     "INSERT INTO sweep (started, command, commit_id, version, machine, packages) "
-                    "SELECT ?, ?, ?, ?, id, ? FROM machine WHERE fingerprint = ?",
-                    (_now(), _text(command), commit, version, _json(packages), fingerprint),
+                    "VALUES (?, ?, ?, ?, ?, ?)",
+                    (_now(), _text(command), commit, version, number, _json(packages)),
                 )
             )
 
@@ -146,18 +141,36 @@ class Database:
             _show_leaves(connection)
             return int(experiment)
 
-    def done(self, keys: Iterable[str]) -> dict[str, dict[int, str]]:
-        """What is measured already: for each of the keys {repeat: status} of its newest runs, {} where none is."""
-        found: dict[str, dict[int, str]] = {key: {} for key in keys}
+    def done(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> dict[str, dict[int, str]]:
+        """What is measured already: for each of the keys {repeat: status} of its newest runs, {} where none is.
+
+        Parameters
+        ----------
+        sweeps : count only what these have measured
+        """
+        with told(self.path):
+            return done_runs(self._connection, keys, sweeps)
+
+    def controlled(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> set[tuple[str, int]]:
+        """The keys and repeats that have a control; of these sweeps, where they are given."""
         with told(self.path):
             rows = self._connection.execute(
-                "SELECT point.key, repeat, status FROM current_run JOIN point ON point.id = current_run.point "
-                "WHERE point.key IN (SELECT value FROM json_each(?))",
-                (json.dumps(list(found)),),
+                "SELECT key, repeat FROM control JOIN point ON point.id = control.point "
+                "WHERE key IN (SELECT value FROM json_each(?1)) "
+                "AND (?2 IS NULL OR sweep IN (SELECT value FROM json_each(?2)))",
+                (json.dumps(list(keys)), None if sweeps is None else json.dumps(list(sweeps))),
             )
-            for key, repeat, status in rows:
-                found[key][repeat] = status
-        return found
+            return set(rows)
+
+    def broken_off(self, command: str) -> list[int]:
+        """The newest sweeps as far as all of them had this command line and did not come to their end."""
+        with told(self.path):
+            rows = self._connection.execute(
+                "SELECT id FROM sweep WHERE id > "
+                "(SELECT coalesce(max(id), 0) FROM sweep WHERE finished IS NOT NULL OR command <> ?)",
+                (_text(command),),
+            )
+            return [number for (number,) in rows]
 
     def add_run(
         self,
@@ -171,6 +184,8 @@ class Database:
         timing_grade: bool,
         started: datetime | None = None,
         plan: Mapping[str, Any] | None = None,
+        machine: Mapping[str, Any] | None = None,
+        conditions: Mapping[str, float] | None = None,
     ) -> None:
         """Keep one run; it is on the disk when this returns.
 
@@ -183,6 +198,8 @@ class Database:
         timing_grade : whether its clocks may be compared with others
         started : with its time zone
         plan : the pipeline that the run was made of, which the point has from now on
+        machine : facts of where it ran, as in `begin_sweep`; without, the machine of the sweep
+        conditions : what it met there
 
         Raises
         ------
@@ -191,21 +208,38 @@ class Database:
         """
         begun = started.astimezone(timezone.utc).isoformat(timespec="milliseconds") if started else None
         with self._transaction() as connection:
-            point = connection.execute("SELECT id FROM point WHERE key = ?", (key,)).fetchone()
-            if point is None:
-                raise KeyError(key)
+            point = _point(connection, key)
             if plan is not None:
-                connection.execute("UPDATE point SET plan = ? WHERE id = ?", (_json(plan), point[0]))
+                connection.execute("UPDATE point SET plan = ? WHERE id = ?", (_json(plan), point))
+            where = _machine_of(connection, sweep) if machine is None else _machine(connection, machine)
             run = _row_id(
                 connection.execute(
-                    "INSERT INTO run (point, repeat, sweep, status, reason, stderr, started, timing_grade) "
-                    "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-                    (point[0], repeat, sweep, status, _text(reason), _text(stderr), begun, int(timing_grade)),
+                    "INSERT INTO run (point, repeat, sweep, status, reason, stderr, started, timing_grade, machine, "
+                    "conditions) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                    (point, repeat, sweep, status, _text(reason), _text(stderr), begun, int(timing_grade), where,
+                     _json(conditions or {})),
                 )
-            )
+            )  # fmt: skip
             connection.executemany(
                 "INSERT INTO metric (run, name, value, unit) VALUES (?, ?, ?, ?)",  # SQLite makes NaN NULL
                 ((run, name, float(value), unit) for name, (value, unit) in metrics.items()),
+            )
+
+    def add_control(
+        self,
+        sweep: int,
+        key: str,
+        repeat: int,
+        status: Status,
+        metrics: Mapping[str, float],
+        machine: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Keep the clocks of a run that was done once more; the parameters are those of `add_run`."""
+        with self._transaction() as connection:
+            where = _machine_of(connection, sweep) if machine is None else _machine(connection, machine)
+            connection.execute(
+                "INSERT INTO control (point, repeat, sweep, machine, status, metrics) VALUES (?, ?, ?, ?, ?, ?)",
+                (_point(connection, key), repeat, sweep, where, status, _json(dict(metrics))),
             )
 
     def add_verdicts(self, sweep: int, experiment: int, kind: VerdictKind, rows: Sequence[VerdictRow]) -> None:
@@ -233,6 +267,44 @@ class Database:
                 if connection.in_transaction:  # a full disk has ended it already
                     connection.execute("ROLLBACK")
                 raise
+
+
+def done_runs(
+    connection: sqlite3.Connection, keys: Iterable[str], sweeps: Iterable[int] | None = None
+) -> dict[str, dict[int, str]]:
+    """See `Database.done`."""
+    found: dict[str, dict[int, str]] = {key: {} for key in keys}
+    rows = connection.execute(
+        "SELECT point.key, repeat, status FROM run JOIN point ON point.id = run.point "
+        "WHERE point.key IN (SELECT value FROM json_each(?1)) "
+        "AND (?2 IS NULL OR sweep IN (SELECT value FROM json_each(?2))) ORDER BY run.id",
+        (json.dumps(list(found)), None if sweeps is None else json.dumps(list(sweeps))),
+    )
+    for key, repeat, status in rows:
+        found[key][repeat] = status
+    return found
+
+
+def _machine(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> int:
+    """The number of a machine; the same `fingerprint` among its facts, or else the same facts, mean the same one."""
+    text = _json(facts)
+    fingerprint = str(facts.get("fingerprint") or hashlib.sha256(text.encode()).hexdigest())
+    connection.execute(
+        "INSERT INTO machine (fingerprint, facts) VALUES (?, ?) ON CONFLICT (fingerprint) DO NOTHING",
+        (fingerprint, text),
+    )
+    return int(connection.execute("SELECT id FROM machine WHERE fingerprint = ?", (fingerprint,)).fetchone()[0])
+
+
+def _machine_of(connection: sqlite3.Connection, sweep: int) -> int:
+    return int(connection.execute("SELECT machine FROM sweep WHERE id = ?", (sweep,)).fetchone()[0])
+
+
+def _point(connection: sqlite3.Connection, key: str) -> int:
+    found = connection.execute("SELECT id FROM point WHERE key = ?", (key,)).fetchone()
+    if found is None:
+        raise KeyError(key)
+    return int(found[0])
 
 
 def _show_leaves(connection: sqlite3.Connection) -> None:

@@ -64,7 +64,10 @@ class ExperimentRecord:
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One run, as a point of one experiment. A metric that was measured and is not a number is NaN here."""
+    """One run, as a point of one experiment. A metric that was measured and is not a number is NaN here.
+
+    `machine` is the fingerprint of where it ran; `conditions` are what it met there.
+    """
 
     experiment: str
     point: str
@@ -74,4 +77,16 @@ class RunRecord:
     sweep: int
     timing_grade: bool
     parameters: Mapping[str, Any]
+    metrics: Mapping[str, float]
+    machine: str = ""
+    conditions: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ControlRecord:
+    """The clocks of a run that was done once more, beside the run of the same point and repeat."""
+
+    point: str
+    repeat: int
+    machine: str
     metrics: Mapping[str, float]

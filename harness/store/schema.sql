@@ -1,4 +1,4 @@
--- The results database. Measurements (run, metric, event, frame) are only ever added; a point that is measured again gets
+-- The results database. Measurements (run, metric, control, event, frame) are only ever added; a point that is measured again gets
 -- further runs, and `current_run` shows the newest of each repeat. JSON columns hold JSON text.
 
 CREATE TABLE machine (
@@ -54,7 +54,20 @@ CREATE TABLE run (
     stderr       TEXT,                      -- its tail
     started      TEXT,                      -- ISO 8601, UTC
     timing_grade INTEGER NOT NULL CHECK (timing_grade IN (0, 1)),
+    machine      INTEGER NOT NULL REFERENCES machine,   -- where it ran; on a cluster not that of its sweep
+    conditions   TEXT NOT NULL,             -- JSON, {name: value}: load, steal, frequency … that it met
     UNIQUE (point, repeat, sweep)
+);
+
+-- The same run once more, beside the run of that point and repeat: how far two equal things come apart.
+CREATE TABLE control (
+    point   INTEGER NOT NULL REFERENCES point,
+    repeat  INTEGER NOT NULL CHECK (repeat >= 0),
+    sweep   INTEGER NOT NULL REFERENCES sweep,
+    machine INTEGER NOT NULL REFERENCES machine,
+    status  TEXT NOT NULL,
+    metrics TEXT NOT NULL,                  -- JSON, {name: value}: its clocks
+    PRIMARY KEY (point, repeat, sweep)
 );
 
 CREATE TABLE metric (

@@ -17,9 +17,9 @@ from typing import Any
 import pandas as pd
 
 from harness.store.connection import open_for_reading, told
-from harness.store.records import ExperimentRecord, PointRow, RunRecord, SweepRecord, VerdictKind, VerdictRow
+from harness.store.records import ControlRecord, ExperimentRecord, PointRow, RunRecord, SweepRecord, VerdictKind, VerdictRow
 
-_FIXED = ("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade")
+_FIXED = ("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade", "machine")
 
 
 def runs(path: str | Path, experiments: Iterable[str] | None = None) -> pd.DataFrame:
@@ -49,7 +49,7 @@ def run_table(records: Iterable[RunRecord]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        experiment, point, repeat, status, reason, sweep and timing_grade, a column a leaf or derived parameter, and a
+        experiment, point, repeat, status, reason, sweep, timing_grade and machine, a column a leaf or derived parameter, and a
         float column a metric, NaN where a run does not report it. Leaves that are lists or mappings are their JSON
         text, so that they can be grouped by.
     """
@@ -70,10 +70,10 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
     with _reading(path) as connection:
         chosen = _names(connection) if experiments is None else sorted(set(experiments))
         rows = connection.execute(
-            "SELECT current_run.id, name, key, parameters, repeat, status, reason, current_run.sweep, timing_grade "
-            "FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
+            "SELECT current_run.id, name, key, parameters, repeat, status, reason, current_run.sweep, timing_grade, "
+            "fingerprint, conditions FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
             "JOIN point ON point.id = experiment_point.point JOIN current_run ON current_run.point = point.id "
-            "WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
+            "JOIN machine ON machine.id = current_run.machine WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
             (json.dumps(chosen),),
         ).fetchall()
         metrics: dict[int, dict[str, float]] = defaultdict(dict)
@@ -84,9 +84,29 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
             metrics[run][name] = math.nan if value is None else value
     points = {row[2]: json.loads(row[3]) for row in rows}
     return [
-        RunRecord(name, key, repeat, status, reason, sweep, bool(timing_grade), points[key], metrics[run])
-        for run, name, key, _, repeat, status, reason, sweep, timing_grade in rows
-    ]
+        RunRecord(
+            name, key, repeat, status, reason, sweep, bool(timing_grade), points[key], metrics[run], machine,
+            json.loads(conditions),
+        )
+        for run, name, key, _, repeat, status, reason, sweep, timing_grade, machine, conditions in rows
+    ]  # fmt: skip
+
+
+def controls(path: str | Path, experiments: Iterable[str] | None = None) -> list[ControlRecord]:
+    """The controls of the points that experiments list now, each beside the newest run of its point and repeat."""
+    with _reading(path) as connection:
+        chosen = _names(connection) if experiments is None else sorted(set(experiments))
+        newest: dict[tuple[str, int], ControlRecord] = {}
+        for key, repeat, machine, metrics in connection.execute(
+            "SELECT DISTINCT key, repeat, fingerprint, metrics FROM control JOIN point ON point.id = control.point "
+            "JOIN experiment_point ON experiment_point.point = point.id "
+            "JOIN experiment ON experiment.id = experiment_point.experiment "
+            "JOIN machine ON machine.id = control.machine "
+            "WHERE status = 'ok' AND name IN (SELECT value FROM json_each(?)) ORDER BY control.rowid",
+            (json.dumps(chosen),),
+        ):
+            newest[key, repeat] = ControlRecord(key, repeat, machine, json.loads(metrics))
+    return list(newest.values())
 
 
 def experiments(path: str | Path) -> list[ExperimentRecord]:
