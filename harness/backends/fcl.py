@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import chain, combinations, compress, repeat
 from typing import Literal
 
@@ -44,7 +45,8 @@ class Fcl:
         return {"sphere": 1e-15, "hull": 1e-11, "mesh": 1e-14}[shape]
 
     def load(self, scene: Scene) -> None:
-        self.counters = {"pair_tests": 0, "narrow_tests": 0}
+        self._tests = {"pair_tests": 0, "narrow_tests": 0}
+        self._broad: Grid | FclTree | None = None
         if self._algorithm == "brute-force":
             self._bodies = FclObjects(scene)
             self._find: Callable[[Floats, Floats], Pairs] = self._brute_force
@@ -54,16 +56,24 @@ class Fcl:
             return
         sizes = scene.bodies.sizes
         if self._algorithm == "tree":
-            self._broad: Grid | FclTree = FclTree(scene)
+            self._broad = FclTree(scene)
         elif sizes.min(initial=1.0) == sizes.max(initial=1.0):
             self._broad = Grid(scene.bodies.radii, scene.box)
         else:
             self._broad = HierarchicalGrid(scene.bodies.radii, scene.box)
         if scene.shape == "sphere":
-            self._find = self._spheres
+            self._find = partial(self._spheres, self._broad)
         else:
             self._bodies = FclObjects(scene)
-            self._find = self._culled
+            self._find = partial(self._culled, self._broad)
+
+    @property
+    def counters(self) -> dict[str, float]:
+        """Tests so far, and with the grid how many of its cells a body's bounding cube overlapped in the last call."""
+        if isinstance(self._broad, Grid):
+            most, mean = self._broad.cells_per_body()
+            return {**self._tests, "cells_per_body_most": most, "cells_per_body": mean}
+        return dict(self._tests)
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         return self._find(positions, quaternions)
@@ -77,8 +87,8 @@ class Fcl:
         verdicts = map(fcl.collide, *(self._listed or self._both_sides()), repeat(self._request), repeat(result))
         touching = list(compress(combinations(range(count), 2), verdicts))
         tests = count * (count - 1) // 2
-        self.counters["pair_tests"] += tests
-        self.counters["narrow_tests"] += tests
+        self._tests["pair_tests"] += tests
+        self._tests["narrow_tests"] += tests
         return np.array(touching, np.int64).reshape(-1, 2)
 
     def _both_sides(self) -> tuple[Iterable[fcl.CollisionObject], Iterable[fcl.CollisionObject]]:
@@ -87,15 +97,15 @@ class Fcl:
         first = chain.from_iterable(map(repeat, objects, range(len(objects) - 1, -1, -1)))
         return first, chain.from_iterable(objects[i:] for i in range(1, len(objects)))
 
-    def _spheres(self, positions: Floats, quaternions: Floats) -> Pairs:
-        found = self._broad.close_pairs(positions)
-        self.counters["pair_tests"] = self.counters["narrow_tests"] = self._broad.pair_tests
+    def _spheres(self, broad: Grid | FclTree, positions: Floats, quaternions: Floats) -> Pairs:
+        found = broad.close_pairs(positions)
+        self._tests["pair_tests"] = self._tests["narrow_tests"] = broad.pair_tests
         return found
 
-    def _culled(self, positions: Floats, quaternions: Floats) -> Pairs:
-        close = self._broad.close_pairs(positions)
-        self.counters["pair_tests"] = self._broad.pair_tests
-        self.counters["narrow_tests"] += len(close)
+    def _culled(self, broad: Grid | FclTree, positions: Floats, quaternions: Floats) -> Pairs:
+        close = broad.close_pairs(positions)
+        self._tests["pair_tests"] = broad.pair_tests
+        self._tests["narrow_tests"] += len(close)
         if not len(close):
             return close
         self._bodies.place(positions, quaternions, np.unique(close))

@@ -44,9 +44,9 @@ class Backend(Protocol):
         """
 
 
-def counters(backend: Backend) -> Mapping[str, int]:
+def counters(backend: Backend) -> Mapping[str, float]:
     """What the backend has counted since it was loaded (`pair_tests`, `narrow_tests`); empty if it does not count."""
-    counted: Mapping[str, int] = getattr(backend, "counters", {})
+    counted: Mapping[str, float] = getattr(backend, "counters", {})
     return counted
 
 

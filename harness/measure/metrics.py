@@ -16,7 +16,8 @@ Kind = Literal["counter", "clock", "error", "resource"]
 class Metric:
     """One metric: its unit ("1" for a plain number), its kind and what it means.
 
-    Counters are exact and the same on every machine; clocks are noisy and need statistics; errors are deterministic.
+    Counters are exact and the same on every machine; clocks are noisy and need statistics; errors, and what else is
+    measured of the motion, are deterministic.
     """
 
     name: str
@@ -51,6 +52,24 @@ METRICS: dict[str, Metric] = _table(
     Metric("box_hits", "1", "counter", "wall contacts that were approaching, and so were answered"),
     Metric("predictions", "1", "counter", "searches for a body's next event"),
     Metric("events", "1", "counter", "answered hits of pairs and walls"),
+    Metric(
+        "stale_events", "1", "counter", "predicted events whose partner had changed course, and so were predicted anew"
+    ),
+    Metric("cell_crossings", "1", "counter", "passages of a body from cell to cell"),
+    Metric("list_renewals", "1", "counter", "neighbour lists made anew"),
+    Metric(
+        "guarded_hits", "1", "counter", "inelastic hits answered elastically, because they came too soon after another"
+    ),
+    Metric("stalled_events", "1", "counter", "times a body was made to wait, because too many events came in no time"),
+    Metric("predictions_per_event", "1", "counter", "predictions / events"),
+    Metric("pair_tests_per_event", "1", "counter", "pair_tests / events, of a predictive run"),
+    Metric("pair_tests_per_body", "1", "counter", "pair_tests / (frames · bodies), of a stepped run"),
+    Metric(
+        "cells_per_body", "1", "counter", "mean number of grid cells that a body's bounding cube overlaps, last frame"
+    ),
+    Metric(
+        "cells_per_body_most", "1", "counter", "largest number of grid cells that a body's cube overlaps, last frame"
+    ),
     *_clock("pair_seconds", "finding the touching pairs, pose updates included"),
     *_clock("box_seconds", "testing the box walls"),
     *_clock("response_seconds", "answering hits"),
@@ -62,6 +81,11 @@ METRICS: dict[str, Metric] = _table(
     *_clock("box_seconds_per_frame", "box_seconds / frames"),
     *_clock("frames_per_second", "frames / run_seconds", "1/s"),
     *_clock("simulated_per_second", "simulated seconds / run_seconds", "s/s"),
+    Metric("collision_rate", "1/s", "error", "pair hits of a body in a second"),
+    Metric("pressure", "Pa", "error", "mean force on the walls over the area that centres can reach"),
+    Metric("virial_residual", "1", "error", "imbalance of the virial theorem over the run, relative"),
+    Metric("pressure_to_theory", "1", "error", "pressure / that of kinetic theory for a box with walls"),
+    Metric("pair_impulse_to_theory", "1", "error", "mean impulse of a pair hit / that of kinetic theory"),
     Metric("energy_drift", "1", "error", "largest |E - E0| / E0 of the translational energy"),
     Metric("momentum_drift", "1", "error", "largest change of total momentum by pair hits, of the initial sum of m|v|"),
     Metric("max_penetration", "1", "error", "deepest overlap of a touching pair seen in a frame, of its mean size"),

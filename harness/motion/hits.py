@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -63,7 +64,7 @@ class Trace:
     positions: Floats
     velocities: Floats
     energy: float
-    counters: dict[str, int]
+    counters: Mapping[str, float]
 
     def to_json(self) -> dict[str, Any]:
         """The document that `harness trace --json` prints."""
@@ -79,7 +80,7 @@ class Trace:
             "velocity": self.velocities.tolist(),
             "energy": self.energy,
         }
-        return {"events": events, "final": final, "counters": self.counters}
+        return {"events": events, "final": final, "counters": dict(self.counters)}
 
 
 @dataclass(frozen=True)

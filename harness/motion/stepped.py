@@ -5,7 +5,7 @@ Walls come last, so that no answer to a pair can send a centre out of the box.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -75,7 +75,7 @@ def fly_stepped(
         clock.lap("box_seconds")
         observer.frame(time, pairs, hits, walls)
 
-    counted = {
+    counted: dict[str, float] = {
         "frames": frames,
         **_pair_counters(backend),
         "box_tests": 6 * len(scene.bodies) * frames if plan.keeps("walls") else 0,
@@ -84,8 +84,13 @@ def fly_stepped(
         "box_hits": observer.wall_hits,
         "events": observer.pair_hits + observer.wall_hits,
     }
-    metrics = counted | _clock_metrics(clock, frames, frames * dt) | _errors(observer, answers, plan)
     end = frames * dt
+    metrics = {
+        **counted,
+        **_rates(counted, len(scene.bodies), frames, end),
+        **_clock_metrics(clock, frames, end),
+        **_errors(observer, answers, plan),
+    }
     return Outcome(metrics, _trace(scene, flight, observer, end, counted) if traced else None)
 
 
@@ -110,8 +115,17 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:
     return hulls
 
 
-def _pair_counters(backend: Backend | None) -> dict[str, int]:
+def _pair_counters(backend: Backend | None) -> dict[str, float]:
     return {"pair_tests": 0, "narrow_tests": 0} if backend is None else dict(counters(backend))
+
+
+def _rates(counted: Mapping[str, float], bodies: int, frames: int, simulated: float) -> dict[str, float]:
+    rates = {}
+    if "pair_tests" in counted and bodies and frames:
+        rates["pair_tests_per_body"] = counted["pair_tests"] / (bodies * frames)
+    if bodies and simulated > 0.0:
+        rates["collision_rate"] = 2.0 * counted["pair_hits"] / (bodies * simulated)
+    return rates
 
 
 def _clock_metrics(clock: Clock, frames: int, simulated: float) -> dict[str, float]:
@@ -137,7 +151,7 @@ def _errors(observer: Observer, answers: Answers | None, plan: Plan) -> dict[str
     return errors
 
 
-def _trace(scene: Scene, flight: Flight, observer: Observer, end: float, counted: dict[str, int]) -> Trace | None:
+def _trace(scene: Scene, flight: Flight, observer: Observer, end: float, counted: dict[str, float]) -> Trace | None:
     if observer.log is None:
         return None
     flight.move_to(end)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from harness.measure.statistics import CONFIDENCE, NOISY_ABOVE, Summary
+from harness.report.crossings import crossing_sentences
 from harness.report.quantity import exponent_text, number, plural, quantity
 from harness.report.ranking import Growth, Ranked, rank, times_worse
 from harness.report.series import Arrangement, Cell, Series
@@ -46,7 +47,12 @@ def findings(
     ----------
     machines : fingerprint of the machine of every sweep, by the sweep's number
     """
-    sentences = [*_fastest(arrangement), *_exponents(arrangement, growths), *_change(arrangement)]
+    sentences = [
+        *_fastest(arrangement),
+        *crossing_sentences(arrangement),
+        *_exponents(arrangement, growths),
+        *_change(arrangement),
+    ]
     sentences += _outcomes(record.claims, "claim")
     if not sentences and any(not cell.good.empty for cell in arrangement.cells):
         sentences += _single(arrangement)

@@ -1,7 +1,7 @@
 """An experiment's points arranged for reading: one leaf along x, one series for every combination of the others.
 
 A series is what a figure draws as a line and a table as a row. Where there are too many for one picture they are split
-into panels by a leaf of the scene.
+into panels by a leaf of the scene; so they are where methods are compared on several scenes.
 """
 
 from __future__ import annotations
@@ -92,6 +92,12 @@ class Series:
         wanted = _hashable(x)
         return next((cell for cell, value in zip(self.cells, self.x, strict=True) if _hashable(value) == wanted), None)
 
+    def shares_scenes_with(self, other: Series) -> bool:
+        """Whether the two are methods put to the same scenes, wherever they share an x."""
+        theirs = dict(zip(map(_hashable, other.x), other.cells, strict=True))
+        pairs = [(cell, theirs.get(_hashable(x))) for cell, x in zip(self.cells, self.x, strict=True)]
+        return all(_scene(mine.point) == _scene(match.point) for mine, match in pairs if match is not None)
+
 
 @dataclass(frozen=True)
 class Arrangement:
@@ -168,10 +174,16 @@ def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> 
 
 
 def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
-    if len({_key(cell, others) for cell in cells}) <= MOST_IN_A_PANEL or len(others) < 2:
+    scene = [leaf for leaf in others if leaf not in _METHOD]
+    mixed = 0 < len(scene) < len(others)  # methods are compared on the same scene
+    if len(others) < 2 or not (mixed or len({_key(cell, others) for cell in cells}) > MOST_IN_A_PANEL):
         return None
-    scene = [leaf for leaf in others if leaf not in _METHOD] or list(others)
+    scene = scene or list(others)
     return min(scene, key=lambda leaf: (_spread(cells, leaf) > 8, -_spread(cells, leaf)))
+
+
+def _scene(point: PointRow) -> dict[str, Any]:
+    return {leaf: value for leaf, value in point.parameters.items() if leaf not in _METHOD}
 
 
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:

@@ -1,0 +1,126 @@
+"""Predictive motion of spheres: from event to event, without frames.
+
+The event loop is `harness.motion.predictive`; this is a run of it, with its clock, counters and what it conserves.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from harness.arrays import Floats
+from harness.broadphase.hierarchical_grid import HierarchicalGrid
+from harness.measure.clocks import Clock
+from harness.measure.conservation import Conservation, energy
+from harness.measure.kinetics import Kinetics
+from harness.motion.hits import Outcome, Trace
+from harness.motion.plan import Plan
+from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
+from harness.motion.response import Response
+from harness.narrowphase.penetration import Penetration
+from harness.scene.scene import Scene
+
+# How often a run is looked at from outside its clock; events are the same to the bit however often.
+LOOKS = 20
+
+
+def fly_predicted(
+    scene: Scene,
+    plan: Plan,
+    *,
+    duration: float,
+    response: Response,
+    restitution: float = 1.0,
+    traced: bool = False,
+) -> Outcome:
+    """Fly spheres for `duration` (s), event by event.
+
+    Parameters
+    ----------
+    scene : Scene of shape `sphere`
+    plan : Plan of this scene
+    duration : s; what is due at that very time still happens
+    response, restitution : see `harness.motion.response`
+    traced : keep every event
+
+    Returns
+    -------
+    Outcome
+        With the counters, the run's clock and the errors of a predictive run.
+    """
+    bodies = scene.bodies
+    conservation, kinetics = Conservation(bodies), Kinetics(scene, response, restitution)
+    depth = _Depth(scene) if plan.keeps("penetration") else None
+    clock = Clock("run_seconds")
+    simulation = Simulation(
+        bodies.positions,
+        bodies.velocities,
+        bodies.radii,
+        bodies.masses,
+        scene.box.half,
+        response=response,
+        restitution=restitution,
+        record=traced,
+    )
+    clock.lap("run_seconds")
+    outside = np.zeros(len(bodies), np.bool_)
+    for look in range(1, LOOKS + 1):
+        clock.start()
+        simulation.advance(duration * look / LOOKS)
+        clock.lap("run_seconds")
+        positions, velocities = simulation.positions, simulation.velocities
+        conservation.observe(velocities)
+        outside |= (np.abs(positions) > scene.box.half).any(axis=1)
+        if depth is not None:
+            depth.look(positions)
+        if look == LOOKS // 5:
+            kinetics.begin(simulation)
+
+    counted = simulation.counters
+    metrics: dict[str, float] = {
+        **counted,
+        **clock.metrics(),
+        "energy_drift": conservation.energy_drift,
+        "escaped": float(np.count_nonzero(outside)),
+        **kinetics.end(simulation),
+    }
+    for kind in ("", "_elapsed"):
+        if metrics[f"run_seconds{kind}"] > 0.0:
+            metrics[f"simulated_per_second{kind}"] = duration / metrics[f"run_seconds{kind}"]
+    if counted["events"]:
+        metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
+        metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
+    if depth is not None:
+        metrics["max_penetration"] = depth.deepest
+    return Outcome(metrics, _trace(scene, simulation, duration, counted) if traced else None)
+
+
+class _Depth:
+    """The deepest overlap found by looking now and then."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.deepest = 0.0
+        self._quaternions = scene.bodies.quaternions
+        self._grid = HierarchicalGrid(scene.bodies.radii, scene.box)
+        self._penetration = Penetration(scene)
+
+    def look(self, positions: Floats) -> None:
+        pairs = self._grid.close_pairs(positions)
+        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._quaternions))
+
+
+def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:
+    events: Any = simulation.take_events()
+    pair = events["kind"] == PAIR_EVENT
+    velocities = simulation.velocities
+    return Trace(
+        times=events["time"],
+        bodies=np.column_stack([events["i"], np.where(pair, events["j"], -1)]).astype(np.int64),
+        walls=np.where(pair, -1, events["wall"]).astype(np.int64),
+        time=duration,
+        positions=simulation.positions,
+        velocities=velocities,
+        energy=energy(velocities, scene.bodies.masses),
+        counters=counted,
+    )
