@@ -6,14 +6,20 @@ Exit code 1 if a run failed or an expectation does not hold, 2 if an experiment 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from harness.runner.sweep import Job, Summary, Watcher
-    from harness.runner.task import Report
+    from pathlib import Path
+
+    from harness.experiment.experiment import Experiment
+    from harness.runner.executor import Executor
+    from harness.runner.schedule import Choice
+    from harness.runner.sweep import Summary
+    from harness.scene.mesh import Mesh
 
 DATABASE = "results/results.db"
 
@@ -23,85 +29,182 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--db", metavar="FILE", default=DATABASE, help="the database (default: %(default)s)")
     parser.add_argument("--long", action="store_true", help="also experiments of `tier: long`")
     add_override_argument(parser)
+    which = parser.add_argument_group("which runs")
+    which.add_argument(
+        "--only",
+        action="append",
+        default=[],
+        metavar="LEAF=VALUE",
+        help="only points with this value of a leaf, such as backend=fcl; given again, another value of the same leaf "
+        "adds points and another leaf takes some away",
+    )
+    again = which.add_mutually_exclusive_group()
+    again.add_argument("--retry", choices=["failed"], help="do runs again that did not end well")
+    again.add_argument(
+        "--fresh", action="store_true", help="do every run again; the earlier ones are kept (`harness diff` compares)"
+    )
+    which.add_argument("--dry-run", action="store_true", help="say what would be done and how long it may take")
+    where = parser.add_argument_group("where").add_mutually_exclusive_group()
+    where.add_argument(
+        "--jobs", type=_positive, metavar="N", help="N runs at a time on this machine; their times do not count"
+    )
+    where.add_argument(
+        "--cluster",
+        type=_address,
+        metavar="ADDRESS",
+        help="on the workers of a Dask scheduler, tcp://HOST:PORT; or local:N, as --jobs",
+    )
+    saying = parser.add_mutually_exclusive_group()
+    saying.add_argument("--quiet", action="store_true", help="say only what goes wrong, and the outcome")
+    saying.add_argument("--verbose", action="store_true", help="a line a run")
 
 
 def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
+    from harness.cli.progress import Progress
     from harness.runner.preparation import prepare
     from harness.runner.sweep import sweep
     from harness.store.database import Database
 
+    choice = _choice(arguments)
     experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
     chosen = [experiment for experiment in experiments if arguments.long or experiment.measure.tier == "default"]
     for left in [experiment.name for experiment in experiments if experiment not in chosen]:
         print(f"{left}: left out, since it is `tier: long`; --long runs it", file=sys.stderr)
     command = shlex.join(["harness", *sys.argv[1:]])
-    with Database.open(arguments.db) as database, _Progress() as progress:
+    if arguments.dry_run:
+        _foretell(chosen, meshes, arguments, command, choice)
+        return 0
+    progress = Progress("quiet" if arguments.quiet else "verbose" if arguments.verbose else "normal")
+    with Database.open(arguments.db) as database, progress:
         try:
-            summary = sweep(chosen, meshes, database, command=command, watch=progress.watch)
+            summary = sweep(
+                chosen, meshes, database, command=command, watch=progress, executor=_executor(arguments), choice=choice
+            )
         except KeyboardInterrupt:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
             return 130
-    _say(summary, arguments.db)
+    _say(summary, arguments)
     return 1 if summary.failed else 0
 
 
-class _Progress:
-    """Progress of a sweep on standard error: a bar on a terminal, a line a failure elsewhere."""
+def _choice(arguments: argparse.Namespace) -> Choice:
+    from harness.experiment.document import read_value
+    from harness.experiment.leaves import DERIVED, LEAVES
+    from harness.experiment.messages import near, shown
+    from harness.runner.schedule import Choice
 
-    def __enter__(self) -> _Progress:
-        from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-        self._console = Console(stderr=True)
-        self._progress = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TextColumn("runs"),
-            TimeRemainingColumn(),
-            console=self._console,
-            transient=True,
-            disable=not self._console.is_terminal,
-        )
-        self._progress.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._progress.stop()
-
-    def watch(self, jobs: Sequence[Job]) -> Watcher:
-        """Show how many runs there are to do; returns what is told of each."""
-        bar = self._progress.add_task("sweep", total=len(jobs))
-        if not self._console.is_terminal:
-            self._console.print(f"{len(jobs)} runs to do", highlight=False)
-
-        def after_run(job: Job, report: Report) -> None:
-            self._progress.update(bar, advance=1, description=job.experiment.name)
-            if report.status != "ok":
-                self._console.print(
-                    f"{_name(job)}: {report.status}: {report.reason}", markup=False, highlight=False, soft_wrap=True
-                )
-
-        return after_run
+    only: dict[str, list[Any]] = {}
+    problems = []
+    for text in arguments.only:
+        leaf, equals, value = (part.strip() for part in text.partition("="))
+        if not (leaf and equals):
+            problems.append(Problem(f"--only {text}: must be LEAF=VALUE, such as backend=fcl"))
+        elif leaf not in (*LEAVES, *DERIVED):
+            problems.append(Problem(f"--only {text}: unknown leaf {shown(leaf)}{near(leaf, (*LEAVES, *DERIVED))}"))
+        else:
+            only.setdefault(leaf, []).append(read_value(value))
+    if problems:
+        raise InputError(problems)
+    return Choice(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
 
 
-def _name(job: Job) -> str:
-    varied = [f"{leaf} {job.point.parameters[leaf]}" for leaf in job.experiment.swept]
-    return f"{job.experiment.name} ({', '.join([*varied, f'repeat {job.repeat}'])})"
+def _executor(arguments: argparse.Namespace) -> Executor | None:
+    """None for this machine, one run at a time."""
+    address = f"local:{arguments.jobs}" if arguments.jobs and arguments.jobs > 1 else arguments.cluster
+    if address is None:
+        return None
+    from harness.runner.cluster import Cluster
+
+    return Cluster(address)
 
 
-def _say(summary: Summary, database: str) -> None:
+def _positive(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise ValueError
+    return number
+
+
+_positive.__name__ = "number"  # argparse names it: "invalid number value"
+
+
+def _address(text: str) -> str:
+    kind, _, rest = text.partition(":")
+    if kind == "local":
+        _positive(rest)
+    elif "://" not in text:
+        raise argparse.ArgumentTypeError(f"{text}: must be tcp://HOST:PORT or local:N")
+    return text
+
+
+def _foretell(
+    experiments: Sequence[Experiment],
+    meshes: Mapping[Path, Mesh],
+    arguments: argparse.Namespace,
+    command: str,
+    choice: Choice,
+) -> None:
+    """What a sweep would do. Nothing is written, and no database is made."""
+    import os
+    from contextlib import nullcontext
+
+    from harness.runner.estimate import START_UP, spoken
+    from harness.runner.sweep import work_of
+    from harness.store.history import history_of
+
+    there = os.path.exists(arguments.db) and os.path.getsize(arguments.db) > 0
+    with history_of(arguments.db) if there else nullcontext() as history:
+        work = work_of(experiments, meshes, history, command=command.replace(" --dry-run", ""), choice=choice)
+    jobs, kept = work.schedule
+    rows = []
+    for experiment in experiments:
+        mine = [job for job in jobs if job.experiment is experiment]
+        seconds = work.estimate.left(mine)
+        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else spoken(seconds)])
+    _print_table(["experiment", "runs to do", "time"], rows)
+    backends = {job.point.engine.backend for job in jobs}
+    total = work.estimate.left(jobs)
+    known = sum(work.estimate.of(job) is not None for job in jobs)
+    if not jobs:
+        time = "nothing to do"
+    elif total is None:
+        time = "no run like these was ever done, so there is no estimate of time"
+    else:
+        time = f"about {spoken(total + START_UP * len(backends))}, from earlier runs of {known} of them"
+    print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
+
+
+def _say(summary: Summary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
+    from harness.runner.estimate import spoken
+
+    if not arguments.quiet and summary.experiments:
+        rows = []
+        for name, statuses in summary.experiments.items():
+            failed = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()) if status != "ok")
+            rows.append([name, str(statuses.total()), failed or "none", spoken(summary.seconds[name])])
+        _print_table(["experiment", "runs", "failed", "time"], rows)
     counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
     told = f" ({counts})" if counts else ""
     print(f"{summary.done.total()} runs done{told}, {summary.kept.total()} kept from before")
+    if summary.controls:
+        print(f"{summary.controls} of them done twice, as a control of the noise")
     failed_before = summary.kept.total() - summary.kept["ok"]
     if failed_before:
-        print(f"{failed_before} of those kept had failed; the report says why")
+        print(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
-    option = "" if database == DATABASE else f" --db {database}"
-    print(f"Now `harness report{option}` turns {database} into pages.")
+    option = "" if arguments.db == DATABASE else f" --db {arguments.db}"
+    print(f"Now `harness report{option}` turns {arguments.db} into pages.")
+
+
+def _print_table(titles: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Columns, the first to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
+    for row in (titles, *rows):
+        first, *others = (text.ljust(width) if not place else text.rjust(width)
+                          for place, (text, width) in enumerate(zip(row, widths, strict=True)))  # fmt: skip
+        print("  ".join([first, *others]).rstrip())

@@ -15,12 +15,12 @@ def point_key(point: Point, mesh: Mesh | None) -> str:
     """Hash of the resolved scene, motion and engine, the contents of the mesh, and the sources of this package."""
     parameters = dict(point.parameters)
     parameters["mesh"] = mesh.digest if mesh else None
-    content = json.dumps({"parameters": parameters, "sources": _sources()}, sort_keys=True)
+    content = json.dumps({"parameters": parameters, "sources": sources_hash()}, sort_keys=True)
     return hashlib.sha256(content.encode()).hexdigest()
 
 
 @cache
-def _sources() -> str:
+def sources_hash() -> str:
     package = Path(__file__).resolve().parents[1]
     content = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):

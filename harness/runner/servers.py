@@ -42,6 +42,11 @@ class Servers:
             server.close()
         self._servers.clear()
 
+    def interrupt(self) -> None:
+        """End every process, from another thread than the one that waits for a run."""
+        for server in list(self._servers.values()):
+            server.hang_up()
+
     def run(self, task: Task, mesh: Mesh | None) -> Report:
         """Run a task once in a process of its own; it never raises for what the run does.
 
@@ -135,6 +140,11 @@ class _Server:
         except (EOFError, OSError):
             return None
         return report
+
+    def hang_up(self) -> None:
+        """Let the server see that nobody listens any more; it ends its run and itself."""
+        with socket.socket(fileno=os.dup(self._channel.fileno())) as copy:
+            copy.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
         """End the server and the run that it may have in flight."""

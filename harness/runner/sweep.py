@@ -3,42 +3,36 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from datetime import datetime, timezone
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
+from harness.errors import InputError
 from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import fingerprint, machine_facts, package_versions, source_commit
 from harness.measure.metrics import METRICS
 from harness.measure.verdicts import judge
 from harness.motion.hits import Trace
+from harness.runner.estimate import Estimate
+from harness.runner.executor import Alone, Done, Executor
 from harness.runner.key import point_key
-from harness.runner.servers import Servers, mesh_of
+from harness.runner.schedule import Choice, Job, Schedule, schedule
+from harness.runner.servers import Servers, mesh_of, task_of
 from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
 from harness.store.database import Database
+from harness.store.history import History
 from harness.store.records import PointRow, RunRecord, VerdictKind, VerdictRow
 from harness.store.tables import run_table, runs
 
 Meshes = Mapping[Path, Mesh]
-
-
-@dataclass(frozen=True)
-class Job:
-    """One run to do: a repeat of a point, for the first experiment that lists it."""
-
-    experiment: Experiment
-    point: Point
-    key: str
-    repeat: int
 
 
 @dataclass
@@ -49,13 +43,17 @@ class Summary:
     ----------
     kept : runs that earlier sweeps had done already, by status
     done : runs done now, by status
-    failures : job and report of every run done now that is not ok
+    controls : control runs done now
+    experiments : by the name of each experiment, the statuses of its runs of now; a shared run counts for the first
+    seconds : by the same names, the elapsed time of these runs
     broken : experiment and statement of every expectation that fails
     """
 
     kept: Counter[str] = field(default_factory=Counter)
     done: Counter[str] = field(default_factory=Counter)
-    failures: list[tuple[Job, Report]] = field(default_factory=list)
+    controls: int = 0
+    experiments: dict[str, Counter[str]] = field(default_factory=dict)
+    seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     broken: list[tuple[str, str]] = field(default_factory=list)
 
     @property
@@ -65,7 +63,67 @@ class Summary:
         return statuses.total() > statuses["ok"] or bool(self.broken)
 
 
-Watcher = Callable[[Job, Report], None]
+class Watcher(Protocol):
+    """Who is told how a sweep goes; nothing is timed meanwhile, unless a cluster does the runs."""
+
+    def begin(self, jobs: Sequence[Job], estimate: Estimate) -> None:
+        """These are the runs to do."""
+
+    def before(self, job: Job) -> None:
+        """A run is about to begin."""
+
+    def after(self, job: Job, report: Report) -> None:
+        """A run has ended and is kept."""
+
+
+class Work(NamedTuple):
+    """What a sweep would do: the key of each point by its id, the runs, and how long they may take."""
+
+    keys: dict[int, str]
+    schedule: Schedule
+    estimate: Estimate
+
+
+def work_of(
+    experiments: Sequence[Experiment],
+    meshes: Meshes,
+    history: History | None,
+    *,
+    command: str,
+    choice: Choice,
+) -> Work:
+    """The runs that a sweep has to do. Nothing is written.
+
+    Parameters
+    ----------
+    experiments, meshes : loaded and opened
+    history : what is measured already; None for nothing
+    command : the command line that repeats the sweep: where it asks for fresh runs and was broken off, it goes on
+    choice : which runs are wanted
+
+    Raises
+    ------
+    InputError
+        If no point is what `choice` asks for.
+    """
+    keys: dict[int, str] = {}
+    parameters: dict[str, dict[str, Any]] = {}
+    for experiment in experiments:
+        for point in experiment.points:
+            mesh = mesh_of(experiment, point, meshes)
+            key = keys[id(point)] = point_key(point, mesh)
+            parameters[key] = _parameters(point, mesh)
+    wanted = {key for key, found in parameters.items() if choice.wants(found)}
+    if choice.only and parameters and not wanted:
+        raise InputError("--only: no point of these experiments has these values")
+    if history is None:
+        status: dict[str, dict[int, str]] = {key: {} for key in parameters}
+        controlled: set[tuple[str, int]] = set()
+    else:
+        sweeps = history.broken_off(command) if choice.fresh else None
+        status, controlled = history.done(parameters, sweeps), history.controlled(parameters, sweeps)
+    found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=choice.retry)
+    return Work(keys, found, Estimate(history.durations() if history else {}, parameters))
 
 
 def sweep(
@@ -74,7 +132,9 @@ def sweep(
     database: Database,
     *,
     command: str,
-    watch: Callable[[Sequence[Job]], Watcher],
+    watch: Watcher,
+    executor: Executor | None = None,
+    choice: Choice | None = None,
 ) -> Summary:
     """Do what is missing of these experiments and keep it.
 
@@ -84,41 +144,28 @@ def sweep(
     meshes : every mesh that they name, opened
     database : open for writing
     command : the command line that repeats the sweep
-    watch : called with all jobs before the first, returns what is called after each
+    watch : is told how it goes
+    executor : who does the runs; without, this machine, one run at a time
+    choice : which of the runs to do; without, those that are missing
 
     Raises
     ------
     InputError
-        If the database cannot take what was measured.
+        If the database cannot take what was measured, or no run is what `choice` asks for.
     """
+    work = work_of(experiments, meshes, database.history, command=command, choice=choice or Choice())
     machine = machine_facts()
     machine["fingerprint"] = fingerprint(machine)
     number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions())
-    keys = {id(point): point_key(point, mesh_of(e, point, meshes)) for e in experiments for point in e.points}
-    listed = {e.name: database.list_experiment(number, **_listing(e, keys, meshes)) for e in experiments}
-    jobs, kept = _missing(experiments, keys, database, random.Random(number))
-    summary = Summary(kept)
-    after_run = watch(jobs)
-    with Servers() as servers:
-        for job in jobs:
-            started = datetime.now(timezone.utc)
-            report = servers.run(job.experiment, job.point, meshes)
-            database.add_run(
-                number,
-                job.key,
-                job.repeat,
-                report.status,
-                report.reason,
-                report.stderr,
-                {name: (value, METRICS[name].unit) for name, value in report.metrics.items()},
-                timing_grade=True,
-                started=started,
-                plan=asdict(report.plan) if report.plan else None,
-            )
-            summary.done[report.status] += 1
-            if report.status != "ok":
-                summary.failures.append((job, report))
-            after_run(job, report)
+    listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
+    summary = Summary(work.schedule.kept)
+    watch.begin(work.schedule.jobs, work.estimate)
+    with executor or Alone() as doing:
+        for done in doing.run(work.schedule.jobs, meshes, watch.before):
+            _keep(database, number, done)
+            _count(summary, done)
+            work.estimate.learn(done.job, done.report.conditions.get("seconds", 0.0))
+            watch.after(done.job, done.report)
     for experiment in experiments:
         table = runs(database.path, [experiment.name])
         expectations = [_verdict(criterion, table, experiment, "expectation") for criterion in experiment.expect]
@@ -128,6 +175,39 @@ def sweep(
         summary.broken += [(experiment.name, row.statement) for row in expectations if row.verdict == "fails"]
     database.finish_sweep(number)
     return summary
+
+
+def _keep(database: Database, sweep: int, done: Done) -> None:
+    """Put a run, or a control, into the database."""
+    job, report = done.job, done.report
+    if job.control:
+        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].kind == "clock"}
+        database.add_control(sweep, job.key, job.repeat, report.status, clocks, done.machine)
+        return
+    database.add_run(
+        sweep,
+        job.key,
+        job.repeat,
+        report.status,
+        report.reason,
+        report.stderr,
+        {name: (value, METRICS[name].unit) for name, value in report.metrics.items()},
+        timing_grade=done.timing_grade,
+        started=done.started,
+        plan=asdict(report.plan) if report.plan else None,
+        machine=done.machine,
+        conditions=report.conditions,
+    )
+
+
+def _count(summary: Summary, done: Done) -> None:
+    if done.job.control:
+        summary.controls += 1
+        return
+    name, status = done.job.experiment.name, done.report.status
+    summary.done[status] += 1
+    summary.experiments.setdefault(name, Counter())[status] += 1
+    summary.seconds[name] += done.report.conditions.get("seconds", 0.0)
 
 
 def run(experiment: Experiment, meshes: Meshes) -> pd.DataFrame:
@@ -142,8 +222,8 @@ def run(experiment: Experiment, meshes: Meshes) -> pd.DataFrame:
     with Servers() as servers:
         for repeat in range(experiment.measure.repeats):
             for point in experiment.points:
-                report = servers.run(experiment, point, meshes)
-                mesh = mesh_of(experiment, point, meshes)
+                task, mesh = task_of(experiment, point, meshes, pinned=True)
+                report = servers.run(task, mesh)
                 records.append(
                     RunRecord(
                         experiment=experiment.name,
@@ -176,7 +256,7 @@ def trace(experiment: Experiment, meshes: Meshes) -> Trace:
     RunError
     """
     with Servers() as servers:
-        report = servers.run(experiment, experiment.points[0], meshes, traced=True)
+        report = servers.run(*task_of(experiment, experiment.points[0], meshes, traced=True))
     if report.trace is None:
         raise RunError(report)
     return report.trace
@@ -207,29 +287,6 @@ def _listing(experiment: Experiment, keys: Mapping[int, str], meshes: Meshes) ->
             for point in experiment.points
         ],
     }
-
-
-def _missing(
-    experiments: Sequence[Experiment], keys: Mapping[int, str], database: Database, order: random.Random
-) -> tuple[list[Job], Counter[str]]:
-    """The runs still to do, and the statuses of those done.
-
-    Blocks of one repeat of every point, each in random order: what drifts on the machine then meets all points alike.
-    """
-    status = database.done(keys.values())
-    jobs: list[Job] = []
-    kept: dict[tuple[str, int], str] = {}
-    for repeat in range(max((experiment.measure.repeats for experiment in experiments), default=0)):
-        block: dict[str, Job] = {}
-        for experiment in experiments:
-            for point in experiment.points if repeat < experiment.measure.repeats else ():
-                key = keys[id(point)]
-                if repeat in status[key]:
-                    kept[key, repeat] = status[key][repeat]
-                else:
-                    block.setdefault(key, Job(experiment, point, key, repeat))
-        jobs += order.sample(list(block.values()), len(block))
-    return jobs, Counter(kept.values())
 
 
 def _verdict(criterion: Criterion, table: pd.DataFrame, experiment: Experiment, kind: VerdictKind) -> VerdictRow:

@@ -19,6 +19,7 @@ from typing import Any
 
 from harness.errors import InputError
 from harness.store.connection import open_for_writing, told
+from harness.store.history import History
 from harness.store.lock import SweepLock
 from harness.store.records import PointRow, Status, VerdictKind, VerdictRow
 
@@ -141,36 +142,14 @@ class Database:
             _show_leaves(connection)
             return int(experiment)
 
-    def done(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> dict[str, dict[int, str]]:
-        """What is measured already: for each of the keys {repeat: status} of its newest runs, {} where none is.
+    @property
+    def history(self) -> History:
+        """What is measured already."""
+        return History(self.path, self._connection)
 
-        Parameters
-        ----------
-        sweeps : count only what these have measured
-        """
-        with told(self.path):
-            return done_runs(self._connection, keys, sweeps)
-
-    def controlled(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> set[tuple[str, int]]:
-        """The keys and repeats that have a control; of these sweeps, where they are given."""
-        with told(self.path):
-            rows = self._connection.execute(
-                "SELECT key, repeat FROM control JOIN point ON point.id = control.point "
-                "WHERE key IN (SELECT value FROM json_each(?1)) "
-                "AND (?2 IS NULL OR sweep IN (SELECT value FROM json_each(?2)))",
-                (json.dumps(list(keys)), None if sweeps is None else json.dumps(list(sweeps))),
-            )
-            return set(rows)
-
-    def broken_off(self, command: str) -> list[int]:
-        """The newest sweeps as far as all of them had this command line and did not come to their end."""
-        with told(self.path):
-            rows = self._connection.execute(
-                "SELECT id FROM sweep WHERE id > "
-                "(SELECT coalesce(max(id), 0) FROM sweep WHERE finished IS NOT NULL OR command <> ?)",
-                (_text(command),),
-            )
-            return [number for (number,) in rows]
+    def done(self, keys: Iterable[str]) -> dict[str, dict[int, str]]:
+        """For each of the keys {repeat: status} of its newest runs, {} where none is."""
+        return self.history.done(keys)
 
     def add_run(
         self,
@@ -267,22 +246,6 @@ class Database:
                 if connection.in_transaction:  # a full disk has ended it already
                     connection.execute("ROLLBACK")
                 raise
-
-
-def done_runs(
-    connection: sqlite3.Connection, keys: Iterable[str], sweeps: Iterable[int] | None = None
-) -> dict[str, dict[int, str]]:
-    """See `Database.done`."""
-    found: dict[str, dict[int, str]] = {key: {} for key in keys}
-    rows = connection.execute(
-        "SELECT point.key, repeat, status FROM run JOIN point ON point.id = run.point "
-        "WHERE point.key IN (SELECT value FROM json_each(?1)) "
-        "AND (?2 IS NULL OR sweep IN (SELECT value FROM json_each(?2))) ORDER BY run.id",
-        (json.dumps(list(found)), None if sweeps is None else json.dumps(list(sweeps))),
-    )
-    for key, repeat, status in rows:
-        found[key][repeat] = status
-    return found
 
 
 def _machine(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> int:

@@ -17,7 +17,15 @@ from typing import Any
 import pandas as pd
 
 from harness.store.connection import open_for_reading, told
-from harness.store.records import ControlRecord, ExperimentRecord, PointRow, RunRecord, SweepRecord, VerdictKind, VerdictRow
+from harness.store.records import (
+    ControlRecord,
+    ExperimentRecord,
+    PointRow,
+    RunRecord,
+    SweepRecord,
+    VerdictKind,
+    VerdictRow,
+)
 
 _FIXED = ("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade", "machine")
 
@@ -49,9 +57,9 @@ def run_table(records: Iterable[RunRecord]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        experiment, point, repeat, status, reason, sweep, timing_grade and machine, a column a leaf or derived parameter, and a
-        float column a metric, NaN where a run does not report it. Leaves that are lists or mappings are their JSON
-        text, so that they can be grouped by.
+        experiment, point, repeat, status, reason, sweep, timing_grade and machine, a column a leaf or derived
+        parameter, and a float column a metric, NaN where a run does not report it. Leaves that are lists or mappings
+        are their JSON text, so that they can be grouped by.
     """
     records = list(records)
     parameters = list(dict.fromkeys(leaf for record in records for leaf in record.parameters))
@@ -71,9 +79,11 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
         chosen = _names(connection) if experiments is None else sorted(set(experiments))
         rows = connection.execute(
             "SELECT current_run.id, name, key, parameters, repeat, status, reason, current_run.sweep, timing_grade, "
-            "fingerprint, conditions FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
+            "fingerprint, conditions "
+            "FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
             "JOIN point ON point.id = experiment_point.point JOIN current_run ON current_run.point = point.id "
-            "JOIN machine ON machine.id = current_run.machine WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
+            "JOIN machine ON machine.id = current_run.machine "
+            "WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
             (json.dumps(chosen),),
         ).fetchall()
         metrics: dict[int, dict[str, float]] = defaultdict(dict)

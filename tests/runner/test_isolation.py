@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from harness.runner.servers import Servers
+from harness.runner.servers import Servers, task_of
 
 
 def run_one(experiment, servers):
-    return servers.run(experiment, experiment.points[0], {})
+    return servers.run(*task_of(experiment, experiment.points[0], {}))
 
 
 @pytest.mark.parametrize(

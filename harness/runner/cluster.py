@@ -1,0 +1,248 @@
+"""Runs on the workers of a Dask cluster: the same isolated runs, one a worker slot at a time.
+
+A worker keeps warm servers of its own, as a sweep on one machine does; only the sweeping process writes results. The
+runs of a worker that dies are done by another. Needs the extra `cluster`.
+"""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from functools import cache
+from pathlib import Path
+from time import monotonic
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from harness.errors import InputError
+from harness.measure.machine import fingerprint, machine_facts, package_versions
+from harness.runner.executor import Done
+from harness.runner.key import sources_hash
+from harness.runner.schedule import Job
+from harness.runner.servers import Servers, task_of
+from harness.runner.task import Report, Task
+from harness.scene.mesh import Mesh
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+CONNECT_TIMEOUT = 30.0  # s for the scheduler to answer
+WORKER_TIMEOUT = 120.0  # s for the first worker to join
+AHEAD = 2  # jobs handed out for each slot, so that no slot waits for the next
+DEATHS = 5  # of workers with the same run in hand, until the run is held to be the reason
+LOOK_EVERY = 5.0  # s between looks at who is there
+LOCAL = "local:"
+
+
+class Cluster:
+    """Does the jobs of a sweep on the workers of a Dask scheduler.
+
+    Parameters
+    ----------
+    address : of a scheduler, `tcp://host:port`; or `local:N` for N workers on this machine
+
+    Raises
+    ------
+    InputError
+        The extra is not installed, nobody answers, or a worker runs another version of the program.
+    """
+
+    def __init__(self, address: str) -> None:
+        self._address = address
+        self._option = f"--cluster {address}"
+        self._open = ExitStack()
+        self._known: set[str] = set()
+        self._slots: Counter[str] = Counter()  # by machine, of all workers that there ever were
+        self._sent: dict[Future, Job] = {}
+        self._last_seen = monotonic()
+
+    def __enter__(self) -> Cluster:
+        try:
+            self._client = self._connect()
+            try:
+                self._client.wait_for_workers(1, timeout=WORKER_TIMEOUT)
+            except TimeoutError as error:
+                raise InputError(f"{self._option}: no worker joined in {WORKER_TIMEOUT:g} s") from error
+            self._look()
+        except BaseException:
+            self._open.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is not None and self._sent:  # runs that nobody waits for any more
+            with suppress(Exception):
+                self._client.cancel(list(self._sent), force=True)
+                self._client.run(stop_here, on_error="ignore")
+        self._open.close()
+
+    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
+        """See `harness.runner.executor.Executor`; `before` is called when a job is handed out."""
+        waiting = deque(jobs)
+        contents: dict[str, Future] = {}
+        while waiting or self._sent:
+            slots = self._look()
+            while waiting and len(self._sent) < AHEAD * max(1, slots):
+                job = waiting.popleft()
+                before(job)
+                self._sent[self._submit(job, meshes, contents)] = job
+            for future in self._finished():
+                yield self._done(self._sent.pop(future), future)
+
+    def _submit(self, job: Job, meshes: Mapping[Path, Mesh], contents: dict[str, Future]) -> Future:
+        task, mesh = task_of(job.experiment, job.point, meshes)
+        if mesh is not None and mesh.digest not in contents:
+            # as a task, not as scattered data: it can be made again when the worker that holds it dies
+            contents[mesh.digest] = self._client.submit(_itself, mesh, key=f"mesh-{mesh.digest}")
+        return self._client.submit(run_here, task, contents[mesh.digest] if mesh else None, pure=False)
+
+    def _finished(self) -> list[Future]:
+        """Wait until some runs have ended; none after a while, so that one can look around."""
+        from distributed import wait
+
+        try:
+            return list(wait(list(self._sent), timeout=LOOK_EVERY, return_when="FIRST_COMPLETED").done)
+        except TimeoutError:
+            return []
+
+    def _done(self, job: Job, future: Future) -> Done:
+        from distributed import KilledWorker
+
+        try:
+            outcome: Outcome = future.result()
+        except KilledWorker as error:
+            now, report = datetime.now(timezone.utc), Report("crashed", f"every worker that tried it died: {error}")
+            return Done(job, report, timing_grade=False, started=now)
+        alone = self._slots[outcome.host] == 1
+        return Done(job, outcome.report, timing_grade=alone, started=outcome.started, machine=outcome.machine)
+
+    def _look(self) -> int:
+        """How many slots there are now; workers that have joined are checked first.
+
+        Raises
+        ------
+        InputError
+            A worker cannot do these runs, or there has been none for too long.
+        """
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        new = workers.keys() - self._known
+        if new:
+            for address, theirs in self._ask(sorted(new)).items():
+                self._check(address, theirs)
+                self._known.add(address)
+                self._slots[theirs.host] += workers[address]["nthreads"]
+        if workers:
+            self._last_seen = monotonic()
+        elif monotonic() - self._last_seen > WORKER_TIMEOUT:
+            raise InputError(
+                f"{self._option}: there has been no worker for {WORKER_TIMEOUT:g} s; every finished run is kept, and "
+                "the same command does the rest"
+            )
+        return sum(worker["nthreads"] for worker in workers.values())
+
+    def _ask(self, addresses: list[str]) -> dict[str, Identity]:
+        try:
+            # one that has died meanwhile does not answer
+            found = self._client.run(identity, workers=addresses, on_error="return")
+        except (ModuleNotFoundError, AttributeError) as error:
+            raise InputError(f"{self._option}: a worker lacks this program: {error}") from error
+        for address, answer in found.items():
+            if isinstance(answer, ModuleNotFoundError | AttributeError):
+                raise InputError(f"{self._option}: the worker {address} lacks this program: {answer}")
+        return {address: answer for address, answer in found.items() if isinstance(answer, Identity)}
+
+    def _check(self, address: str, theirs: Identity) -> None:
+        ours = identity()
+        if theirs.sources != ours.sources:
+            raise InputError(
+                f"{self._option}: the worker {address} runs another version of harness (its sources hash to "
+                f"{theirs.sources[:12]}, ours to {ours.sources[:12]}); install the same on both"
+            )
+        names = theirs.packages.keys() | ours.packages.keys()
+        if other := sorted(name for name in names if theirs.packages.get(name) != ours.packages.get(name)):
+            raise InputError(
+                f"{self._option}: the worker {address} has other versions of {', '.join(other)}; install the same on "
+                "both"
+            )
+
+    def _connect(self) -> Client:
+        try:
+            import dask
+            from distributed import Client, LocalCluster
+        except ImportError as error:
+            raise InputError(f"{self._option} needs Dask: pip install 'harness[cluster]' ({error})") from error
+        self._open.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}))
+        if not self._address.startswith(LOCAL):
+            try:
+                return self._open.enter_context(Client(self._address, timeout=CONNECT_TIMEOUT))
+            except (OSError, ValueError) as error:
+                raise InputError(f"{self._option}: no scheduler answers: {error}") from error
+        cluster = LocalCluster(
+            n_workers=int(self._address.removeprefix(LOCAL)),
+            threads_per_worker=1,
+            memory_limit=0,  # runs have limits of their own
+            dashboard_address=None,
+            silence_logs=logging.CRITICAL,
+        )
+        self._open.enter_context(cluster)
+        return self._open.enter_context(Client(cluster))
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What a worker is: its machine, and what it would run."""
+
+    host: str
+    sources: str
+    packages: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run on a worker, and where and when it was."""
+
+    report: Report
+    host: str
+    machine: Mapping[str, Any]
+    started: datetime
+
+
+def identity() -> Identity:
+    """Of the process that calls."""
+    return Identity(socket.gethostname(), sources_hash(), package_versions())
+
+
+def run_here(task: Task, mesh: Mesh | None) -> Outcome:
+    """On a worker: one run in a process of its own, forked from a warm server of this slot."""
+    started = datetime.now(timezone.utc)
+    servers = _slots.setdefault(threading.get_ident(), Servers())
+    return Outcome(servers.run(task, mesh), socket.gethostname(), _machine(), started)
+
+
+def stop_here() -> None:
+    """On a worker: end the runs in flight."""
+    for servers in list(_slots.values()):
+        servers.interrupt()
+
+
+# A slot is a thread of the worker. Its servers end when the worker does, for their sockets close then.
+_slots: dict[int, Servers] = {}
+
+
+@cache
+def _machine() -> dict[str, Any]:
+    """Facts of this machine with its name: machines of the same make are not the same machine."""
+    facts = machine_facts() | {"host": socket.gethostname()}
+    return facts | {"fingerprint": fingerprint(facts)}
+
+
+def _itself(mesh: Mesh) -> Mesh:
+    return mesh

@@ -1,0 +1,74 @@
+"""Who does the runs: this machine, one after another (here), or the workers of a cluster (`harness.runner.cluster`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol
+
+from harness.runner.schedule import Job
+from harness.runner.servers import Servers, task_of
+from harness.runner.task import Report
+from harness.scene.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class Done:
+    """A job that has come to an end.
+
+    Parameters
+    ----------
+    timing_grade : whether nothing else of the sweep ran on its machine meanwhile
+    started : with its time zone
+    machine : facts of where it ran; None for the machine of the sweep
+    """
+
+    job: Job
+    report: Report
+    timing_grade: bool
+    started: datetime
+    machine: Mapping[str, Any] | None = None
+
+
+class Executor(Protocol):
+    """A context that does jobs; leaving it ends every process that it started."""
+
+    def __enter__(self) -> Executor: ...
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
+        """Do the jobs, about in this order; each is returned when it ends.
+
+        Parameters
+        ----------
+        jobs, meshes : what to do, and every mesh that it needs
+        before : called when a job is about to begin, before anything of it is timed
+        """
+
+
+class Alone:
+    """One run at a time on this machine, each on a core of its own."""
+
+    def __init__(self) -> None:
+        self._servers = Servers()
+
+    def __enter__(self) -> Alone:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._servers.close()
+
+    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
+        """See `Executor`."""
+        for job in jobs:
+            before(job)
+            task, mesh = task_of(job.experiment, job.point, meshes, pinned=True)
+            started = datetime.now(timezone.utc)
+            yield Done(job, self._servers.run(task, mesh), timing_grade=True, started=started)

@@ -1,0 +1,101 @@
+"""What was measured already, by any connection: for a sweep that resumes, and for one that only asks."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from harness.store.connection import open_for_reading, told
+
+
+class History:
+    """The runs of earlier sweeps.
+
+    Parameters
+    ----------
+    path : the results file, for what is said of it
+    connection : to it
+    """
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self._path = path
+        self._connection = connection
+
+    def done(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> dict[str, dict[int, str]]:
+        """What is measured: for each of the keys {repeat: status} of its newest runs, {} where none is.
+
+        Parameters
+        ----------
+        sweeps : count only what these have measured
+        """
+        found: dict[str, dict[int, str]] = {key: {} for key in keys}
+        with told(self._path):
+            for key, repeat, status in self._connection.execute(
+                "SELECT point.key, repeat, status FROM run JOIN point ON point.id = run.point "
+                "WHERE point.key IN (SELECT value FROM json_each(?1)) "
+                "AND (?2 IS NULL OR sweep IN (SELECT value FROM json_each(?2))) ORDER BY run.id",
+                (json.dumps(list(found)), _list(sweeps)),
+            ):
+                found[key][repeat] = status
+        return found
+
+    def controlled(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> set[tuple[str, int]]:
+        """The keys and repeats that have a control; of these sweeps, where they are given."""
+        with told(self._path):
+            rows = self._connection.execute(
+                "SELECT key, repeat FROM control JOIN point ON point.id = control.point "
+                "WHERE key IN (SELECT value FROM json_each(?1)) "
+                "AND (?2 IS NULL OR sweep IN (SELECT value FROM json_each(?2)))",
+                (json.dumps(list(keys)), _list(sweeps)),
+            )
+            return set(rows)
+
+    def broken_off(self, command: str) -> list[int]:
+        """The newest sweeps, as far as all of them had this command line and did not come to their end."""
+        with told(self._path):
+            rows = self._connection.execute(
+                "SELECT id FROM sweep WHERE id > "
+                "(SELECT coalesce(max(id), 0) FROM sweep WHERE finished IS NOT NULL OR command <> ?)",
+                (command,),
+            )
+            return [number for (number,) in rows]
+
+    def durations(self) -> dict[str, float]:
+        """Mean elapsed seconds of a run, by the key of its point, and by its parameters as sorted JSON text.
+
+        The parameters find what an earlier version of the program has measured under another key.
+        """
+        found: dict[str, float] = {}
+        with told(self._path):
+            for key, parameters, seconds in self._connection.execute(
+                "SELECT key, parameters, avg(json_extract(conditions, '$.seconds')) FROM run "
+                "JOIN point ON point.id = run.point GROUP BY point.id "
+                "HAVING avg(json_extract(conditions, '$.seconds')) IS NOT NULL ORDER BY max(run.id)"
+            ):
+                found[key] = seconds
+                found[json.dumps(json.loads(parameters), sort_keys=True)] = seconds
+        return found
+
+
+@contextmanager
+def history_of(path: str | Path) -> Iterator[History]:
+    """The history of a results file, for reading alone.
+
+    Raises
+    ------
+    InputError
+        The file is missing, empty, damaged, another program's, or of another schema version.
+    """
+    path = Path(path)
+    connection = open_for_reading(path)
+    try:
+        yield History(path, connection)
+    finally:
+        connection.close()
+
+
+def _list(sweeps: Iterable[int] | None) -> str | None:
+    return None if sweeps is None else json.dumps(list(sweeps))
