@@ -242,7 +242,8 @@ def _ratio(
     if partner["point"].nunique() > 1:
         statement = f"{subject} can be compared with more than one point{_for(base)}"
         return _group(where, "undecided", statement, summary([]))
-    pairs = case.finished(rows).merge(case.finished(partner), on="repeat", suffixes=("", " of partner"))
+    places = ["repeat", "machine"] if "machine" in rows else ["repeat"]  # times of two machines are not compared
+    pairs = case.finished(rows).merge(case.finished(partner), on=places, suffixes=("", " of partner"))
     found = paired_ratio(pairs[case.metric], pairs[f"{case.metric} of partner"])
     outcome, remark = _judged(case, found)
     return _group(where, outcome, f"{subject} is {_interval(found)} times that{_for(base)}{remark}", found)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from harness.measure.noise import told_apart
 from harness.measure.statistics import CONFIDENCE, NOISY_ABOVE, Summary
 from harness.report.crossings import crossing_sentences
 from harness.report.quantity import exponent_text, number, plural, quantity
@@ -38,15 +39,8 @@ class Findings:
         return (*self.sentences, *self.failures, Markup("Nothing was measured yet."))[0]
 
 
-def findings(
-    record: ExperimentRecord, arrangement: Arrangement, growths: Sequence[Growth], machines: Mapping[int, str]
-) -> Findings:
-    """The findings of an experiment.
-
-    Parameters
-    ----------
-    machines : fingerprint of the machine of every sweep, by the sweep's number
-    """
+def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequence[Growth]) -> Findings:
+    """The findings of an experiment."""
     sentences = [
         *_fastest(arrangement),
         *crossing_sentences(arrangement),
@@ -66,9 +60,7 @@ def findings(
         for row in record.expectations
         if row.verdict != "holds"
     ]
-    return Findings(
-        tuple(sentences), (*failures, *_failed_runs(arrangement)), tuple(_warnings(record, arrangement, machines))
-    )
+    return Findings(tuple(sentences), (*failures, *_failed_runs(arrangement)), tuple(_warnings(record, arrangement)))
 
 
 def stability(arrangement: Arrangement) -> str:
@@ -96,7 +88,7 @@ def _fastest(arrangement: Arrangement) -> list[Markup]:
         for panel in arrangement.panels:
             lines = [series for series in arrangement.series if series.panel == panel]
             for x in ends:
-                ranked = rank(lines, x, metric)
+                ranked = rank(lines, x, metric, arrangement.floor(metric))
                 if len(ranked) > 1:
                     found.append(_lead(arrangement, ranked, panel, x, metric))
     return found
@@ -156,7 +148,8 @@ def _change(arrangement: Arrangement) -> list[Markup]:
             quantity(last.median(metric), metric_unit(metric)),
         )
         how = Markup("<strong>{}</strong> {}").format(_times(ratio), _interval(ratio))
-        told = Markup(", not to be told from no change") if ratio.low <= 1.0 <= ratio.high else Markup("")
+        apart = told_apart(ratio, arrangement.floor(metric) if is_clock(metric) else 0.0)
+        told = Markup("") if apart else Markup(", not to be told from no change")
         found.append(text + Markup(": {}{}.").format(how, told))
     return found
 
@@ -242,7 +235,7 @@ def _failed_runs(arrangement: Arrangement) -> list[Markup]:
     return found
 
 
-def _warnings(record: ExperimentRecord, arrangement: Arrangement, machines: Mapping[int, str]) -> list[Markup]:
+def _warnings(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
     found = []
     said: dict[str, list[Cell]] = {}
     for cell in arrangement.cells:
@@ -275,7 +268,7 @@ def _warnings(record: ExperimentRecord, arrangement: Arrangement, machines: Mapp
         found.append(Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported)))
     if record.sweep.finished is None:
         found.append(Markup("<strong>The sweep did not come to its end</strong>; the same command does the rest."))
-    where = {machines.get(int(sweep), "") for cell in arrangement.cells for sweep in cell.runs["sweep"]}
+    where = {machine for cell in arrangement.cells for machine in cell.runs["machine"]}
     if len(where) > 1:
         found.append(
             Markup("<strong>Runs come from {} machines</strong>: times compare only within one.").format(len(where))

@@ -23,7 +23,7 @@ from harness.report.figures import Figure, exponent_figure, metric_figures, publ
 from harness.report.findings import Findings, findings, stability
 from harness.report.plan import Stage, stages
 from harness.report.published import Row, published_rows, recovered
-from harness.report.quantity import leaf_text, plural, quantity
+from harness.report.quantity import leaf_text, number, plural, quantity
 from harness.report.ranking import Growth, growth
 from harness.report.series import Arrangement, arrange
 from harness.report.table import Table
@@ -37,12 +37,18 @@ from harness.report.tables import (
     recovered_table,
     tests_table,
 )
-from harness.report.words import setting
-from harness.store.records import ExperimentRecord, SweepRecord
+from harness.report.words import metric_title, setting
+from harness.store.records import ControlRecord, ExperimentRecord
 
 # Exponents are told for what the experiment asks for and for these counts, which have no noise.
 _COUNTS = ("pair_tests", "box_tests", "narrow_tests", "predictions", "events")
 _MOST_VALUES = 6
+_CONDITIONS = {
+    "load": ("processes that wanted to run when a run began", "1"),
+    "steal": ("processor time that other guests of the same host took", "%"),
+    "frequency": ("clock rate", "Hz"),
+    "flights": ("how often a scene was flown in its run, for a long enough sample", "1"),
+}
 _MOST_SLOPES = 24
 
 
@@ -53,12 +59,13 @@ class ExperimentPage:
     record: ExperimentRecord
     runs: pd.DataFrame
     folder: PurePosixPath
-    machines: Mapping[int, str]
+    controls: Sequence[ControlRecord] = ()
+    met: Sequence[Mapping[str, float]] = ()
 
     @cached_property
     def arrangement(self) -> Arrangement:
         """Its points as series."""
-        return arrange(self.record, self.runs)
+        return arrange(self.record, self.runs, self.controls)
 
     @cached_property
     def growths(self) -> list[Growth]:
@@ -70,7 +77,7 @@ class ExperimentPage:
     @cached_property
     def findings(self) -> Findings:
         """What it found, in sentences."""
-        return findings(self.record, self.arrangement, self.growths, self.machines)
+        return findings(self.record, self.arrangement, self.growths)
 
     @cached_property
     def figures(self) -> list[Figure]:
@@ -146,6 +153,30 @@ class ExperimentPage:
         return stability(self.arrangement)
 
     @property
+    def noise(self) -> str:
+        """What the control says, in a sentence; nothing where there is none."""
+        floors = {name: floor for name in self.arrangement.metrics if (floor := self.arrangement.floor(name))}
+        if not floors:
+            return ""
+        said = ", ".join(f"±{number(100 * floor)} % in {metric_title(name)}" for name, floor in floors.items())
+        return (
+            f"Noise floor: {said}. So far apart were runs of the same point done twice "
+            f"({plural(self.arrangement.controls, 'pair')}); no smaller difference is called one."
+        )
+
+    @property
+    def conditions(self) -> list[tuple[str, str]]:
+        """What its runs met on their machines: load, stolen time, clock rate."""
+        rows = []
+        for name, (meaning, unit) in _CONDITIONS.items():
+            values = sorted(run[name] for run in self.met if name in run)
+            if values:
+                low, middle, high = (_condition(values[at], unit) for at in (0, len(values) // 2, -1))
+                said = low if low == high else f"{low} to {high}, median {middle}"
+                rows.append((name, f"{said} ({meaning})"))
+        return rows
+
+    @property
     def failed(self) -> int:
         """How many runs failed."""
         return int((self.runs["status"] != "ok").sum())
@@ -161,7 +192,7 @@ class ExperimentPage:
         repeats = sorted({int(count) for count in self.runs.groupby("point").size()}) if len(self.runs) else [0]
         each = plural(repeats[0], "repeat") if len(repeats) == 1 else f"{repeats[0]} to {repeats[-1]} repeats"
         points = plural(len(self.record.points), "point")
-        return "; ".join([*parts, f"{points}, {each} each, on {machine_text(self.record.sweep)}"])
+        return "; ".join([*parts, f"{points}, {each} each, on {machine_text(self.record.sweep.machine)}"])
 
     @property
     def specification(self) -> Markup:
@@ -217,18 +248,23 @@ def published_section(page: ExperimentPage, elsewhere: Sequence[Row]) -> Publish
     )
 
 
-def machine_text(sweep: SweepRecord) -> str:
+def _condition(value: float, unit: str) -> str:
+    if unit == "Hz":
+        return f"{number(value / 1e9)} GHz"
+    return f"{number(100 * value)} %" if unit == "%" else number(value)
+
+
+def machine_text(facts: Mapping[str, Any]) -> str:
     """The machine in a phrase."""
-    facts = sweep.machine
-    parts = [str(facts[name]) for name in ("processor",) if facts.get(name)]
+    parts = [str(facts[name]) for name in ("host", "processor") if facts.get(name)]
     parts += [plural(int(facts["cores"]), "core")] if isinstance(facts.get("cores"), int) else []
-    return ", ".join(parts) or f"machine {sweep.fingerprint}"
+    return ", ".join(parts) or "an unknown machine"
 
 
-def machine_rows(sweep: SweepRecord) -> list[tuple[str, str]]:
+def machine_rows(facts: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The facts of a machine, for people."""
     rows = []
-    for name, value in sweep.machine.items():
+    for name, value in facts.items():
         if isinstance(value, int | float) and name == "memory":
             rows.append((name, quantity(float(value), "B")))
         else:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from harness.measure.noise import told_apart
 from harness.measure.statistics import Exponent, Summary, fit_exponent, paired_ratio
 from harness.report.series import Arrangement, Cell, Series
 from harness.report.words import more_is_better
@@ -20,11 +21,12 @@ class Ranked:
     median: float
     behind: Summary | None
     best: bool
+    floor: float = 0.0
 
     @property
     def level(self) -> bool:
-        """Whether it is the best, or not to be told from it: the ratio's interval holds 1."""
-        return self.best or (self.behind is not None and self.behind.low <= 1.0)
+        """Whether it is the best, or not to be told from it: the ratio's interval is not beyond the noise floor."""
+        return self.best or (self.behind is not None and not told_apart(self.behind, self.floor))
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,8 @@ class Growth:
     exponent: Exponent
 
 
-def rank(series: Sequence[Series], x: object, metric: str) -> list[Ranked]:
-    """The series that have the metric at x, best first.
+def rank(series: Sequence[Series], x: object, metric: str, floor: float) -> list[Ranked]:
+    """The series that have the metric at x, best first; `floor` is the noise floor of the metric.
 
     Left out: runs that disagree with the reference, because a faster answer that is wrong is not faster.
     """
@@ -51,14 +53,17 @@ def rank(series: Sequence[Series], x: object, metric: str) -> list[Ranked]:
         return []
     best = found[0][1]
     return [
-        Ranked(line, cell, median, None if cell is best else times_worse(cell, best, metric), cell is best)
+        Ranked(line, cell, median, None if cell is best else times_worse(cell, best, metric), cell is best, floor)
         for line, cell, median in found
     ]
 
 
 def times_worse(cell: Cell, best: Cell, metric: str) -> Summary | None:
-    """How many times the metric of `cell` is worse than that of `best`, over the repeats that both have."""
-    mine, theirs = cell.by_repeat(metric), best.by_repeat(metric)
+    """How many times the metric of `cell` is worse than that of `best`, over the repeats that both have.
+
+    Repeats are paired that ran on the same machine.
+    """
+    mine, theirs = cell.by_place(metric), best.by_place(metric)
     shared = sorted(mine.keys() & theirs.keys())
     if not shared:
         return None

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -17,9 +17,10 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from harness.measure.noise import noise_floor
 from harness.measure.statistics import Summary, summary
 from harness.report.words import setting
-from harness.store.records import ExperimentRecord, PointRow
+from harness.store.records import ControlRecord, ExperimentRecord, PointRow
 
 MOST_IN_A_PANEL = 6
 DEFAULT_METRICS = ("pair_seconds", "box_seconds")
@@ -54,6 +55,11 @@ class Cell:
             return {}
         pairs = zip(self.good["repeat"], self.good[metric], strict=True)
         return {int(repeat): float(value) for repeat, value in pairs if math.isfinite(value)}
+
+    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
+        """The same by repeat and machine: times of two machines are not compared."""
+        machines = dict(zip(self.good["repeat"], self.good["machine"], strict=True)) if len(self.good) else {}
+        return {(repeat, str(machines[repeat])): value for repeat, value in self.by_repeat(metric).items()}
 
     def summary(self, metric: str) -> Summary | None:
         """Median and interval of the metric, None where no good run reports it."""
@@ -108,6 +114,12 @@ class Arrangement:
     series: tuple[Series, ...]
     panel_leaf: str | None
     metrics: tuple[str, ...]
+    floors: Mapping[str, float] = field(default_factory=dict)
+    controls: int = 0
+
+    def floor(self, metric: str) -> float:
+        """How far apart, relatively, two equal points may seem in this metric; 0 where no control tells."""
+        return self.floors.get(metric, 0.0)
 
     @property
     def numeric(self) -> bool:
@@ -125,8 +137,8 @@ class Arrangement:
         return [cell for series in self.series for cell in series.cells]
 
 
-def arrange(record: ExperimentRecord, runs: pd.DataFrame) -> Arrangement:
-    """Arrange an experiment's points and runs (rows of the run table that belong to it)."""
+def arrange(record: ExperimentRecord, runs: pd.DataFrame, controls: Sequence[ControlRecord] = ()) -> Arrangement:
+    """Arrange an experiment's points, its runs (rows of the run table that belong to it), and their controls."""
     by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
     nothing = runs.iloc[:0]
     cells = [Cell(point, by_point.get(point.key, nothing)) for point in record.points]
@@ -162,7 +174,23 @@ def arrange(record: ExperimentRecord, runs: pd.DataFrame) -> Arrangement:
         tuple(series),
         panel_leaf,
         (y,) if isinstance(y, str) else tuple(y),
+        *_floors(cells, controls),
     )
+
+
+def _floors(cells: Sequence[Cell], controls: Sequence[ControlRecord]) -> tuple[dict[str, float], int]:
+    """The noise floor of every clock that the controls report, and how many pairs there are."""
+    of_point = {cell.point.key: cell for cell in cells}
+    pairs: dict[str, list[tuple[float, float]]] = {}
+    for control in controls:
+        cell = of_point.get(control.point)
+        for metric, value in control.metrics.items() if cell else ():
+            first = cell.by_place(metric).get((control.repeat, control.machine)) if cell else None
+            if first is not None:
+                pairs.setdefault(metric, []).append((first, value))
+    floors = {metric: noise_floor(*zip(*found, strict=True)) for metric, found in pairs.items()}
+    known = {metric: floor for metric, floor in floors.items() if floor is not None}
+    return known, max(map(len, pairs.values()), default=0)
 
 
 def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> str | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
@@ -18,6 +18,7 @@ from markupsafe import Markup
 
 from harness.errors import InputError
 from harness.report import palette
+from harness.report.comparison import Comparison
 from harness.report.figures import Figure
 from harness.report.pages import (
     ExperimentPage,
@@ -30,8 +31,13 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.sweeps import facts as sweep_facts
+from harness.report.sweeps import newest_comparison, points_table
+from harness.report.sweeps import summary as comparison_summary
 from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
-from harness.store.tables import experiments, runs, sweeps
+from harness.store.tables import conditions, controls, experiments, machines, runs
+
+SWEEPS = "sweeps.html"
 
 
 @dataclass(frozen=True)
@@ -109,20 +115,27 @@ def write_report(database: str | Path, out: str | Path) -> Path:
 
 def render(database: str | Path) -> Iterator[tuple[str, str]]:
     """Every file of the report: (path below the report, text)."""
-    table, records, known = runs(database), experiments(database), sweeps(database)
-    machines = {sweep.id: sweep.fingerprint for sweep in known}
+    table, records = runs(database), experiments(database)
     taken: set[str] = set()
     pages = [
-        ExperimentPage(record, table[table["experiment"] == record.name], folder_of(record.name, taken), machines)
+        ExperimentPage(
+            record,
+            table[table["experiment"] == record.name],
+            folder_of(record.name, taken),
+            controls(database, [record.name]),
+            conditions(database, record.name),
+        )
         for record in records
     ]
     environment = _environment()
     rows = {page.record.name: page.published for page in pages}
-    claims = any(record.claims for record in records)
+    claims, compared = any(record.claims for record in records), newest_comparison(database)
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
-        yield from _experiment(environment, page, elsewhere, claims)
-    yield "index.html", _index(environment, pages, records)
+        yield from _experiment(environment, page, elsewhere, claims, compared is not None)
+    yield "index.html", _index(environment, pages, records, compared is not None, machines(database))
+    if compared is not None:
+        yield SWEEPS, _compared(environment, compared, claims, records)
     yield "runs.csv", csv(table)
 
 
@@ -142,16 +155,17 @@ def _environment() -> Environment:
     return environment
 
 
-def _navigation(up: str, claims: bool, here: Link | None = None) -> list[Link]:
+def _navigation(up: str, claims: bool, sweeps: bool, here: Link | None = None) -> list[Link]:
     """The way through the site; further pages join here."""
     overview = Link("Overview", f"{up}index.html", here is None)
     titles = ("Experiments", "Claims", "Data") if claims else ("Experiments", "Data")
     places = [Link(title, f"{up}index.html#{title.lower()}") for title in titles]
-    return [overview, *places, *([here] if here else [])]
+    compared = [Link("Sweeps compared", f"{up}{SWEEPS}")] if sweeps and (here is None or here.href != SWEEPS) else []
+    return [overview, *places, *compared, *([here] if here else [])]
 
 
 def _experiment(
-    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool
+    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, sweeps: bool
 ) -> Iterator[tuple[str, str]]:
     published = published_section(page, elsewhere)
     drawn = [*page.figures, page.exponent_figure, published.figure if published else None]
@@ -167,12 +181,12 @@ def _experiment(
     here = Link(page.record.name, "", here=True)
     text = environment.get_template("experiment.html.j2").render(
         title=f"{page.record.title} · harness",
-        navigation=_navigation("../" * len(page.folder.parts), claims, here),
+        navigation=_navigation("../" * len(page.folder.parts), claims, sweeps, here),
         page=page,
         published=published,
         verdicts=verdicts,
         contents=_contents(page, published is not None),
-        environment=_facts(page.record.sweep),
+        environment=[*_facts(page.record.sweep), *page.conditions],
         downloads=downloads,
         footer=_footer([page.record]),
     )
@@ -201,16 +215,20 @@ def _contents(page: ExperimentPage, published: bool) -> list[tuple[str, str]]:
     return [(identity, title) for identity, title, there in entries if there]
 
 
-def _index(environment: Environment, pages: Sequence[ExperimentPage], records: Sequence[ExperimentRecord]) -> str:
+def _index(
+    environment: Environment,
+    pages: Sequence[ExperimentPage],
+    records: Sequence[ExperimentRecord],
+    sweeps: bool,
+    machines: Mapping[str, Mapping[str, Any]],
+) -> str:
     listed = []
     for place, page in enumerate(pages):
         # ids are unique on a page, and the overview shows figures of many
         figure = replace(page.figures[0], name=f"card{place}") if page.figures else None
         listed.append(Listed(page, f"{page.folder}/index.html", figure))
     claims: list[tuple[Listed, VerdictRow]] = [(entry, row) for entry in listed for row in entry.page.record.claims]
-    machines: dict[str, Any] = {}
-    for record in records:
-        machines.setdefault(record.sweep.fingerprint, (machine_text(record.sweep), machine_rows(record.sweep)))
+    used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in pages))
     total, failed = sum(len(page.runs) for page in pages), sum(page.failed for page in pages)
     totals = f"{plural(len(pages), 'experiment')}, {plural(total, 'run')}, {failed or 'none'} failed."
     verdicts = Counter(row.verdict for _, row in claims)
@@ -220,12 +238,25 @@ def _index(environment: Environment, pages: Sequence[ExperimentPage], records: S
         totals += f" Of {plural(len(claims), 'claim')}, {said}."
     return environment.get_template("index.html.j2").render(
         title="Overview · harness",
-        navigation=_navigation("", bool(claims)) if pages else [Link("Overview", "", here=True)],
+        navigation=_navigation("", bool(claims), sweeps) if pages else [Link("Overview", "", here=True)],
         pages=listed,
         failures=[(entry, sentence) for entry in listed for sentence in entry.page.findings.failures],
         claims=claims,
-        machines=list(machines.values()),
+        machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
         totals=totals,
+        footer=_footer(records),
+    )
+
+
+def _compared(environment: Environment, found: Comparison, claims: bool, records: Sequence[ExperimentRecord]) -> str:
+    return environment.get_template("sweeps.html.j2").render(
+        title="Sweeps compared · harness",
+        navigation=_navigation("", claims, True, Link("Sweeps compared", SWEEPS, here=True)),
+        sentences=comparison_summary(found),
+        verdicts=found.verdicts,
+        points=points_table(found),
+        before=sweep_facts(found.before),
+        after=sweep_facts(found.after),
         footer=_footer(records),
     )
 
@@ -236,7 +267,7 @@ def _facts(sweep: SweepRecord) -> list[tuple[str, str]]:
         ("swept", f"{sweep.started} – {sweep.finished or 'not finished'}"),
         ("command", sweep.command),
         ("harness", f"{sweep.version}, commit {sweep.commit or 'unknown'}"),
-        *machine_rows(sweep),
+        *machine_rows(sweep.machine),
         ("packages", packages),
     ]
 

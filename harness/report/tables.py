@@ -223,7 +223,7 @@ def _comparison(arrangement: Arrangement, metric: str) -> Table:
     rows = []
     for panel in arrangement.panels:
         lines = [series for series in arrangement.series if series.panel == panel]
-        ranks = [{entry.series.label: entry for entry in rank(lines, x, metric)} for x in xs]
+        ranks = [{entry.series.label: entry for entry in rank(lines, x, metric, arrangement.floor(metric))} for x in xs]
         for series in lines:
             row = [words(series.label, series.style), *_panel_entry(arrangement, series.cells[0])]
             row += [

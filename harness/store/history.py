@@ -89,10 +89,19 @@ def history_of(path: str | Path) -> Iterator[History]:
     InputError
         The file is missing, empty, damaged, another program's, or of another schema version.
     """
+    with reading(path) as connection:
+        yield History(Path(path), connection)
+
+
+@contextmanager
+def reading(path: str | Path) -> Iterator[sqlite3.Connection]:
+    """A connection that sees one moment of the results; errors as of `history_of`."""
     path = Path(path)
     connection = open_for_reading(path)
     try:
-        yield History(path, connection)
+        with told(path):
+            connection.execute("BEGIN")  # one moment for all that is read
+            yield connection
     finally:
         connection.close()
 

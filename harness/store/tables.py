@@ -9,14 +9,13 @@ import json
 import math
 import sqlite3
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from harness.store.connection import open_for_reading, told
+from harness.store.history import reading
 from harness.store.records import (
     ControlRecord,
     ExperimentRecord,
@@ -75,7 +74,7 @@ def run_table(records: Iterable[RunRecord]) -> pd.DataFrame:
 
 def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> list[RunRecord]:
     """The rows of `runs` one by one; here a metric that is not a number differs from one that is not reported."""
-    with _reading(path) as connection:
+    with reading(path) as connection:
         chosen = _names(connection) if experiments is None else sorted(set(experiments))
         rows = connection.execute(
             "SELECT current_run.id, name, key, parameters, repeat, status, reason, current_run.sweep, timing_grade, "
@@ -104,7 +103,7 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
 
 def controls(path: str | Path, experiments: Iterable[str] | None = None) -> list[ControlRecord]:
     """The controls of the points that experiments list now, each beside the newest run of its point and repeat."""
-    with _reading(path) as connection:
+    with reading(path) as connection:
         chosen = _names(connection) if experiments is None else sorted(set(experiments))
         newest: dict[tuple[str, int], ControlRecord] = {}
         for key, repeat, machine, metrics in connection.execute(
@@ -124,7 +123,7 @@ def experiments(path: str | Path) -> list[ExperimentRecord]:
 
     A row of its `expect` or `claims` that the sweep did not come to judge is undecided, and says so.
     """
-    with _reading(path) as connection:
+    with reading(path) as connection:
         known = {sweep.id: sweep for sweep in _sweeps(connection)}
         records = []
         for number, name, title, question, source, text, sweep in connection.execute(
@@ -149,20 +148,26 @@ def experiments(path: str | Path) -> list[ExperimentRecord]:
 
 def sweeps(path: str | Path) -> list[SweepRecord]:
     """Every sweep, the oldest first."""
-    with _reading(path) as connection:
+    with reading(path) as connection:
         return _sweeps(connection)
 
 
-@contextmanager
-def _reading(path: str | Path) -> Iterator[sqlite3.Connection]:
-    path = Path(path)
-    connection = open_for_reading(path)
-    try:
-        with told(path):
-            connection.execute("BEGIN")  # one moment for all that is read
-            yield connection
-    finally:
-        connection.close()
+def conditions(path: str | Path, experiment: str) -> list[dict[str, float]]:
+    """What each newest run of an experiment met on its machine, by name."""
+    with reading(path) as connection:
+        rows = connection.execute(
+            "SELECT conditions FROM current_run JOIN experiment_point ON experiment_point.point = current_run.point "
+            "JOIN experiment ON experiment.id = experiment_point.experiment WHERE name = ? ORDER BY current_run.id",
+            (experiment,),
+        ).fetchall()
+    return [json.loads(text) for (text,) in rows]
+
+
+def machines(path: str | Path) -> dict[str, dict[str, Any]]:
+    """The facts of every machine that something ran on, by its fingerprint."""
+    with reading(path) as connection:
+        rows = connection.execute("SELECT fingerprint, facts FROM machine ORDER BY id").fetchall()
+    return {fingerprint: json.loads(facts) for fingerprint, facts in rows}
 
 
 def _names(connection: sqlite3.Connection) -> list[str]:

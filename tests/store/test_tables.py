@@ -84,7 +84,7 @@ def test_columns_have_the_types_to_compute_with() -> None:
         ]
     )
     assert list(table) == [
-        *("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade"),
+        *("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade", "machine"),
         *("count", "size", "box", "mesh", "frames", "energy_drift"),
     ]
     assert table["count"].tolist() == [5, 6]

@@ -1,0 +1,111 @@
+"""Compare two sweeps: which points got faster or slower beyond the noise floor, which counted or ended otherwise.
+
+Without numbers, the newest sweep and the newest before it that measured the same points; with one, that and the newest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from harness.report.comparison import Comparison, PointChange
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("before", metavar="SWEEP", nargs="?", type=int, help="number of the earlier sweep")
+    parser.add_argument("after", metavar="SWEEP", nargs="?", type=int, help="number of the later sweep")
+    parser.add_argument(
+        "--db", metavar="FILE", default="results/results.db", help="the database (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--fail-on",
+        action="append",
+        choices=["slower", "changed"],
+        default=[],
+        help="exit 1 if a point is slower, or if a counter, a status or a verdict changed; can be given again",
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from harness.report.comparison import compare
+
+    found = compare(arguments.db, arguments.before, arguments.after)
+    if arguments.json:
+        print(json.dumps(_document(found), ensure_ascii=False, allow_nan=False))
+    else:
+        _say(found)
+    failed = ("slower" in arguments.fail_on and found.counts["slower"]) or (
+        "changed" in arguments.fail_on and found.changed
+    )
+    return 1 if failed else 0
+
+
+def _say(found: Comparison) -> None:
+    for word, sweep in (("before", found.before), ("after", found.after)):
+        print(f"{word:6}  sweep {sweep.id}, {sweep.started}: {sweep.command}")
+    for point in found.points:
+        told = _told(point)
+        if told:
+            print(f"{point.experiment}{f' ({point.label})' if point.label else ''}: {'; '.join(told)}")
+    for verdict in found.verdicts:
+        print(f"{verdict.experiment}: {verdict.before} before, {verdict.after} now: {verdict.statement}")
+    counts = found.counts
+    print(
+        f"{len(found.points)} points measured by both: {counts['slower']} slower, {counts['faster']} faster, "
+        f"{counts['same']} not to be told apart (by less than {100 * found.floor:.0f} %), "
+        f"{counts['unknown']} without enough to tell; {counts['changed']} changed; {found.untouched} not measured again"
+    )
+
+
+def _told(point: PointChange) -> list[str]:
+    """What is different about a point; nothing where it is the same."""
+    told = []
+    if point.pace in ("slower", "faster"):
+        told.append(
+            f"{point.pace}, {point.before:.3g} s to {point.after:.3g} s, {point.ratio.median:.3g} times "
+            f"[{point.ratio.low:.3g}, {point.ratio.high:.3g}]"
+        )
+    told += [f"{name} {before:.15g} to {after:.15g}" for name, (before, after) in point.counters.items()]
+    if point.statuses is not None:
+        told.append(f"{point.statuses[0]} before, {point.statuses[1]} now")
+    return told
+
+
+def _document(found: Comparison) -> dict[str, Any]:
+    return {
+        "before": {"sweep": found.before.id, "started": found.before.started, "commit": found.before.commit},
+        "after": {"sweep": found.after.id, "started": found.after.started, "commit": found.after.commit},
+        "floor": found.floor,
+        "counts": {**found.counts, "untouched": found.untouched, "verdicts": len(found.verdicts)},
+        "points": [
+            {
+                "experiment": point.experiment,
+                "parameters": point.parameters,
+                "pace": point.pace,
+                "changed": point.changed,
+                "run_seconds": [_finite(point.before), _finite(point.after)],
+                "ratio": {
+                    "median": _finite(point.ratio.median),
+                    "low": _finite(point.ratio.low),
+                    "high": _finite(point.ratio.high),
+                    "coverage": point.ratio.coverage,
+                    "pairs": point.ratio.n,
+                },
+                "counters": {name: list(map(_finite, values)) for name, values in point.counters.items()},
+                "statuses": point.statuses,
+            }
+            for point in found.points
+        ],
+        "verdicts": [
+            {"experiment": row.experiment, "before": row.before, "after": row.after, "statement": row.statement}
+            for row in found.verdicts
+        ],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
