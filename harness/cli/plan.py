@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.errors import InputError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,14 +22,18 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.runner.execute import plan_of
     from harness.runner.preparation import prepare
     from harness.runner.servers import mesh_of
-    from harness.runner.setting import build_scene
+    from harness.runner.setting import SceneSizeError, build_scene
+    from harness.scene.launch import PlacementError
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))
     experiment = experiments[0]
-    plans = [
-        (point, plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)))
-        for point in experiment.points
-    ]
+    try:
+        plans = [
+            (point, plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)))
+            for point in experiment.points
+        ]
+    except (SceneSizeError, PlacementError) as error:
+        raise InputError(f"{arguments.path}: {error}") from error
     if arguments.json:
         runs = [
             {

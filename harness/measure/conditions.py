@@ -13,7 +13,7 @@ import psutil
 # What each condition is, and its unit.
 CONDITIONS: dict[str, tuple[str, str]] = {
     "load": ("processes that wanted to run, mean of the last minute, when the run began", "1"),
-    "steal": ("share of all processor time that other guests of the same host took while the run went on", "1"),
+    "steal": ("share of all processor time that other guests of the same host took while the run went on", "%"),
     "frequency": ("clock rate when the run had ended", "Hz"),
     "core": ("number of the core that the run was kept on", "1"),
     "seconds": ("elapsed time of the run with everything around it", "s"),
@@ -41,7 +41,7 @@ class Conditions:
         times = psutil.cpu_times()
         passed = sum(times) - sum(self._times)
         if passed > 0 and hasattr(times, "steal"):
-            found["steal"] = (times.steal - self._times.steal) / passed
+            found["steal"] = 100.0 * (times.steal - self._times.steal) / passed
         frequency = psutil.cpu_freq() if hasattr(psutil, "cpu_freq") else None
         if frequency is not None and frequency.current > 0:
             found["frequency"] = frequency.current * 1e6

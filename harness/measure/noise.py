@@ -1,33 +1,35 @@
-"""The noise floor: how far two equal things come apart on a machine, below which no two others are told apart.
+"""The noise floor: how far two equal runs come apart on a machine, below which no two methods are told apart.
 
 An interval of five repeats leaves out the true median in one case of sixteen, so that of two equal methods one would
-win that often. A control, the same point run as two arms, shows what such a win is worth.
+win that often. A control, the same point run as two arms, shows what such a win is worth: with its floor, an equal
+method wins only if all its five ratios lie where a quarter of them belongs.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
-from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary, paired_ratio
+import numpy as np
+
+from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary
 
 
 def noise_floor(first: Sequence[float], second: Sequence[float]) -> float | None:
-    """How far from 1, relatively, the interval of the ratio of two equal arms reaches.
+    """How far from 1, relatively, the ratio of two equal runs typically is: the median over the pairs of a control.
 
     Parameters
     ----------
-    first, second : the arms, paired by their place
+    first, second : the arms, paired by their place; pairs that are not both above 0 do not count
 
     Returns
     -------
     float or None
-        0.03 where equal things may seem 3 % apart. None below five pairs, which say too little.
+        0.03 where equal runs come 3 % apart. None below five pairs, which say too little.
     """
-    ratio = paired_ratio(first, second)
-    if ratio.n < FEWEST_FOR_INTERVAL or not 0.0 < ratio.low <= ratio.high < math.inf:
+    pairs = np.array([(a, b) for a, b in zip(first, second, strict=True) if a > 0.0 and b > 0.0]).reshape(-1, 2)
+    if len(pairs) < FEWEST_FOR_INTERVAL:
         return None
-    return max(ratio.high, 1.0 / ratio.low) - 1.0
+    return float(np.median(pairs.max(axis=1) / pairs.min(axis=1))) - 1.0
 
 
 def told_apart(ratio: Summary, floor: float) -> bool:

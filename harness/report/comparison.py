@@ -210,12 +210,13 @@ def _statuses(runs: Sequence[RunRecord]) -> str:
 
 def _floor(results: Snapshot) -> float:
     """The noise floor that the controls of the results tell, 0 without."""
-    pairs = [
-        (run.metrics[CLOCK], control[CLOCK])
-        for run in results.runs
-        if (control := results.controls.get((run.point, run.repeat))) and CLOCK in run.metrics and CLOCK in control
-    ]
-    return (noise_floor(*zip(*pairs, strict=True)) if pairs else None) or 0.0
+    first, second = [], []
+    for run in results.runs:
+        control = results.controls.get((run.point, run.repeat), {})
+        if CLOCK in run.metrics and CLOCK in control:
+            first.append(run.metrics[CLOCK])
+            second.append(control[CLOCK])
+    return noise_floor(first, second) or 0.0
 
 
 def _labels(points: Mapping[str, Sequence[RunRecord]]) -> dict[str, str]:

@@ -16,6 +16,7 @@ from pygments import highlight
 from pygments.formatters import HtmlFormatter
 from pygments.lexers import YamlLexer
 
+from harness.measure.conditions import CONDITIONS
 from harness.measure.metrics import METRICS
 from harness.report.contradictions import contradictions
 from harness.report.drawing import Slope
@@ -43,12 +44,7 @@ from harness.store.records import ControlRecord, ExperimentRecord
 # Exponents are told for what the experiment asks for and for these counts, which have no noise.
 _COUNTS = ("pair_tests", "box_tests", "narrow_tests", "predictions", "events")
 _MOST_VALUES = 6
-_CONDITIONS = {
-    "load": ("processes that wanted to run when a run began", "1"),
-    "steal": ("processor time that other guests of the same host took", "%"),
-    "frequency": ("clock rate", "Hz"),
-    "flights": ("how often a scene was flown in its run, for a long enough sample", "1"),
-}
+_CONDITIONS = ("load", "steal", "frequency", "flights")
 _MOST_SLOPES = 24
 
 
@@ -160,15 +156,16 @@ class ExperimentPage:
             return ""
         said = ", ".join(f"±{number(100 * floor)} % in {metric_title(name)}" for name, floor in floors.items())
         return (
-            f"Noise floor: {said}. So far apart were runs of the same point done twice "
-            f"({plural(self.arrangement.controls, 'pair')}); no smaller difference is called one."
+            f"Noise floor: {said}. So far apart were runs of the same point done twice (median of "
+            f"{plural(self.arrangement.controls, 'pair')}); no smaller difference is called one."
         )
 
     @property
     def conditions(self) -> list[tuple[str, str]]:
         """What its runs met on their machines: load, stolen time, clock rate."""
         rows = []
-        for name, (meaning, unit) in _CONDITIONS.items():
+        for name in _CONDITIONS:
+            meaning, unit = CONDITIONS[name]
             values = sorted(run[name] for run in self.met if name in run)
             if values:
                 low, middle, high = (_condition(values[at], unit) for at in (0, len(values) // 2, -1))
@@ -251,7 +248,7 @@ def published_section(page: ExperimentPage, elsewhere: Sequence[Row]) -> Publish
 def _condition(value: float, unit: str) -> str:
     if unit == "Hz":
         return f"{number(value / 1e9)} GHz"
-    return f"{number(100 * value)} %" if unit == "%" else number(value)
+    return f"{number(value)} %" if unit == "%" else number(value)
 
 
 def machine_text(facts: Mapping[str, Any]) -> str:

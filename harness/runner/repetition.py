@@ -16,7 +16,7 @@ from harness.measure.metrics import METRICS
 from harness.motion.hits import Outcome
 
 LONG_ENOUGH = 0.01  # s of CPU time in the motion loop
-MOST_ELAPSED = 0.05  # s that the flights after the first may take with all that is around their loops
+MOST_ELAPSED = 0.02  # s that the flights after the first may take with all that is around their loops
 
 
 def fly_long_enough(fly: Callable[[], Outcome]) -> tuple[Outcome, int]:

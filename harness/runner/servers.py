@@ -108,6 +108,7 @@ class _Server:
             )
         self._channel: Connection = Connection(ours.detach())
         self._sent: set[str] = set()
+        self._ready = False
 
     def start(self, timeout: float) -> Report | None:
         """Wait until it is ready to run; a report where its backend keeps it from that.
@@ -127,6 +128,7 @@ class _Server:
             code = self._process.returncode
             how = f"signal {-code}" if code < 0 else f"exit code {code}"
             return Report("crashed", f"{importing} ended its process with {how}")
+        self._ready = True
         return None
 
     def run(self, task: Task, mesh: Mesh | None) -> Report | None:
@@ -149,6 +151,8 @@ class _Server:
     def close(self) -> None:
         """End the server and the run that it may have in flight."""
         self._channel.close()
+        if not self._ready:  # it has no run to end, and may hang
+            self._process.kill()
         try:
             self._process.wait(timeout=5)
         except subprocess.TimeoutExpired:

@@ -11,6 +11,8 @@ from harness.scene.launch import directions, orientations, place
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
+# Sizes drawn to tell the packing of a scene; of more bodies than that a sample tells it.
+MOST_DRAWN = 10**6
 # Bytes a body needs at the least in arrays of poses, velocities and neighbours; enough to refuse the impossible.
 BYTES_A_BODY = 500
 
@@ -57,7 +59,7 @@ def box_of(point: Point) -> Box:
 def derived_parameters(point: Point, mesh: Mesh | None) -> dict[str, float]:
     """`faces`, `hull_vertices`, `packing` and `box_side` of a point, without placing its bodies.
 
-    Packing is that of the sizes really drawn.
+    Packing is that of the sizes really drawn, of a million bodies and more that of the first million.
     """
     box = box_of(point)
     if point.scene.bodies is not None:
@@ -65,7 +67,9 @@ def derived_parameters(point: Point, mesh: Mesh | None) -> dict[str, float]:
     elif point.scene.size.kind == "constant":
         cubes = (point.scene.count or 0) * point.scene.size.mean**3
     else:
-        cubes = float((_sizes(point) ** 3).sum())
+        count = point.scene.count or 0
+        drawn = point.scene.size.sample(_streams(point)["sizes"], min(count, MOST_DRAWN))
+        cubes = float((drawn**3).sum()) * (count / max(1, len(drawn)))
     return {
         "faces": len(mesh.faces) if mesh else 0,
         "hull_vertices": len(mesh.hull.vertices) if mesh else 0,

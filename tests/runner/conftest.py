@@ -28,18 +28,16 @@ def spheres(tmp_path):
 
 @pytest.fixture
 def plugin(tmp_path, monkeypatch):
-    """Installs a backend whose `pairs` has the given body, under the given name."""
+    """Installs a backend whose `pairs` has the given body, under the given name; `head` runs when it is imported."""
 
-    def install(name: str, body: str) -> None:
+    def install(name: str, body: str = "", head: str = "") -> None:
         folder = tmp_path / "plugins"
         metadata = folder / f"{name}-1.0.dist-info"
         metadata.mkdir(parents=True)
         (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
         (metadata / "entry_points.txt").write_text(f"[harness.backends]\n{name} = {name}_backend:Plugin\n")
+        imports = "import ctypes, os, signal, sys, time\nimport numpy as np\n"
         source = f"""
-            import ctypes, os, sys, time
-            import numpy as np
-
             class Plugin:
                 name = {name!r}
                 shapes = ("sphere", "hull", "mesh")
@@ -54,9 +52,9 @@ def plugin(tmp_path, monkeypatch):
                 def pairs(self, positions, quaternions):
                     self.calls += 1
             """
-        lines = textwrap.dedent(source) + textwrap.indent(textwrap.dedent(body), 8 * " ")
+        lines = imports + head + textwrap.dedent(source) + textwrap.indent(textwrap.dedent(body), 8 * " ")
         (folder / f"{name}_backend.py").write_text(lines + "\n        return np.empty((0, 2), int)\n")
         monkeypatch.syspath_prepend(str(folder))
-        monkeypatch.setenv("PYTHONPATH", str(folder))
+        monkeypatch.setenv("PYTHONPATH", str(folder), prepend=":")
 
     return install

@@ -2,10 +2,11 @@
 
 import os
 import time
-from pathlib import Path
 
+import psutil
 import pytest
 
+from harness.measure.conditions import CONDITIONS
 from harness.runner.servers import Servers, task_of
 
 
@@ -45,18 +46,98 @@ def test_what_a_backend_prints_goes_to_its_row_and_nowhere_else(spheres, plugin,
     assert capfd.readouterr() == ("", "")
 
 
-def test_everything_a_run_started_ends_with_it(spheres, plugin, tmp_path):
+def ended(process, within=5.0):
+    """Whether a process has gone, or goes soon."""
+    deadline = time.monotonic() + within
+    while psutil.pid_exists(process) and psutil.Process(process).status() != psutil.STATUS_ZOMBIE:
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+@pytest.mark.parametrize("hiding", ["", "os.setsid()", "os.setsid()\n    if os.fork(): os._exit(0)\n    os.setsid()"])
+def test_everything_a_run_started_ends_with_it(spheres, plugin, tmp_path, hiding):
+    """A child in a session of its own, whose parent has gone, is found all the same."""
     note = tmp_path / "grandchild"
-    plugin(
-        "forks", f"child = os.fork()\nif child == 0:\n    time.sleep(60)\nopen({str(note)!r}, 'w').write(str(child))"
-    )
+    body = f"""
+        if self.calls == 1 and os.fork() == 0:
+            {hiding.replace(chr(10), chr(10) + 8 * " ")}
+            open({str(note)!r}, "w").write(str(os.getpid()))
+            time.sleep(60)
+        while not os.path.exists({str(note)!r}) or not open({str(note)!r}).read():
+            time.sleep(0.01)
+        """
+    plugin("forks", body)
     with Servers() as servers:
         assert run_one(spheres(backend="forks", algorithm="native"), servers).status == "ok"
-    state = Path(f"/proc/{note.read_text()}/stat")
-    deadline = time.monotonic() + 5
-    while state.exists() and state.read_text().split()[2] != "Z" and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not state.exists() or state.read_text().split()[2] == "Z"
+        assert ended(int(note.read_text()))
+
+
+def test_what_a_backend_writes_into_any_file_it_holds_harms_nobody_else(spheres, plugin):
+    plugin(
+        "scribbles", "for number in range(3, 64):\n    try: os.write(number, b'garbage' * 9)\n    except OSError: pass"
+    )
+    with Servers() as servers:
+        report = run_one(spheres(backend="scribbles", algorithm="native"), servers)
+        assert (report.status, report.reason) == ("crashed", "its report was garbage")
+        assert run_one(spheres(), servers).status == "ok"
+
+
+@pytest.mark.parametrize(
+    ("head", "status", "reason"),
+    [
+        ("ctypes.string_at(0)\n", "crashed", "signal 11"),
+        ("time.sleep(60)\n", "timeout", "did not end within 1 s"),
+        ("1 / 0\n", "failed", "ZeroDivisionError"),
+    ],
+)
+def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(spheres, plugin, head, status, reason):
+    plugin("broken", head=head)
+    experiment = spheres(backend="broken", algorithm="native", timeout=1 if status == "timeout" else 20)
+    with Servers() as servers:
+        began = time.monotonic()
+        report = run_one(experiment, servers)
+        first = time.monotonic() - began
+        assert report.status == status, report
+        assert reason in report.reason
+        began = time.monotonic()
+        assert run_one(experiment, servers).status == status
+        assert time.monotonic() - began < max(1.0, first)  # it is not tried again and again
+        assert run_one(spheres(), servers).status == "ok"
+
+
+def test_a_run_has_one_thread_and_one_core(spheres, plugin):
+    plugin(
+        "tells", "raise ValueError(f\"{len(os.sched_getaffinity(0))} core, {os.environ['OMP_NUM_THREADS']} thread\")"
+    )
+    experiment = spheres(backend="tells", algorithm="native")
+    with Servers() as servers:
+        report = servers.run(*task_of(experiment, experiment.points[0], {}, pinned=True))
+    assert report.reason == "ValueError: 1 core, 1 thread"
+    assert report.conditions["core"] in os.sched_getaffinity(0)
+
+
+def test_what_a_run_met_is_told(spheres):
+    with Servers() as servers:
+        report = run_one(spheres(), servers)
+    assert {"load", "seconds", "flights"} <= report.conditions.keys() <= CONDITIONS.keys()
+    assert 0.0 < report.conditions["seconds"] < 20.0
+
+
+def test_a_run_costs_less_than_50_ms_beyond_its_own_work(spheres):
+    """CPU time of all that surrounds a run that has nothing to do; elapsed time would measure the other load, too."""
+    experiment, cost = spheres(count=1, duration="1/60"), []
+    with Servers() as servers:
+        run_one(experiment, servers)
+        (server,) = servers._servers.values()
+        process = psutil.Process(server._process.pid)
+        for _ in range(20):
+            before = process.cpu_times()
+            run_one(experiment, servers)
+            after = process.cpu_times()
+            cost.append(sum(after[:4]) - sum(before[:4]))  # the server's and its children's
+    assert sum(cost) / len(cost) < 0.05
 
 
 def test_leaving_the_servers_ends_them(spheres):

@@ -1,0 +1,65 @@
+"""What the statistics promise, checked by simulation: coverage of intervals, and no winner among equals."""
+
+import numpy as np
+import pytest
+
+from harness.measure.noise import noise_floor, told_apart
+from harness.measure.statistics import paired_ratio, summary
+
+NOISES = {
+    "normal": lambda rng, shape: rng.normal(10.0, 1.0, shape),
+    "skewed": lambda rng, shape: rng.lognormal(0.0, 0.5, shape),
+    "spiky": lambda rng, shape: rng.exponential(1.0, shape) ** 2,
+}
+MEDIANS = {"normal": 10.0, "skewed": 1.0, "spiky": np.log(2.0) ** 2}
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize("repeats", [5, 6, 8, 11, 20])
+def test_an_interval_holds_the_median_as_often_as_it_says(noise, repeats):
+    samples = NOISES[noise](np.random.default_rng(repeats), (2000, repeats))
+    found = [summary(sample) for sample in samples]
+    held = np.mean([one.low <= MEDIANS[noise] <= one.high for one in found])
+    assert abs(held - found[0].coverage) < 0.03
+
+
+def clocks(rng, trials, arms, repeats=5):
+    """Times of equal methods as a busy machine has them: drift shared by a block, noise of each run, a rare hiccup."""
+    drift = rng.lognormal(0.0, 0.1, (trials, repeats, 1))
+    hiccups = np.where(rng.random((trials, repeats, arms)) < 0.05, 1.3, 1.0)
+    return drift * hiccups * rng.lognormal(0.0, 0.02, (trials, repeats, arms))
+
+
+def winner(times, floor):
+    """Whether the arm with the lowest median is told apart from every other one, as the pages rank."""
+    order = np.argsort(np.median(times, axis=0))
+    best, *others = (times[:, arm] for arm in order)
+    return all(told_apart(paired_ratio(other, best), floor) for other in others)
+
+
+@pytest.mark.parametrize("arms", [2, 3, 6])
+def test_equal_methods_have_no_winner_in_95_of_100_trials(arms):
+    trials = clocks(np.random.default_rng(arms), 1000, arms + 1)
+    # the control is the first arm's second run in each block
+    won = [winner(times[:, :arms], noise_floor(times[:, 0], times[:, arms])) for times in trials]
+    assert np.mean(won) <= 0.05
+
+
+def test_without_the_control_two_equal_methods_have_a_winner_too_often():
+    trials = clocks(np.random.default_rng(2), 1000, 2)
+    assert np.mean([winner(times, 0.0) for times in trials]) > 0.05
+
+
+def test_a_real_difference_is_told():
+    trials = clocks(np.random.default_rng(3), 300, 3) * np.array([1.0, 1.1, 1.0])
+    assert np.mean([winner(times[:, :2], noise_floor(times[:, 0], times[:, 2])) for times in trials]) > 0.8
+
+
+def test_the_floor_is_how_far_equal_runs_typically_are_apart_whichever_is_the_slower():
+    assert noise_floor([1.0] * 5, [1.0, 1.02, 0.97, 1.9, 1.01]) == pytest.approx(0.02)
+    assert noise_floor([0.9] * 5, [1.0] * 5) == noise_floor([1.0] * 5, [0.9] * 5) == pytest.approx(1 / 0.9 - 1)
+
+
+def test_fewer_than_five_pairs_tell_no_floor():
+    assert noise_floor([1.0] * 4, [1.1] * 4) is None
+    assert noise_floor([], []) is None
