@@ -44,7 +44,7 @@ def make_plan(
     approximated: str | None = None,
     forced: Mapping[str, bool] | None = None,
 ) -> Plan:
-    """The plan for a stepped run.
+    """The plan for a run.
 
     Parameters
     ----------
@@ -59,15 +59,17 @@ def make_plan(
     InputError
         If a forced stage does not exist, or forcing it would change the result.
     """
-    stages = [
-        _orientations(scene),
-        _pairs(scene, backend, algorithm),
-        _response(scene, response),
-        _walls(scene, response),
-        _wall_cull(scene, algorithm, response),
-        _penetration(scene),
-        Stage("recording", False, "nothing asks for recorded poses"),
-    ]
+    if algorithm == "predictive":
+        stages = [_orientations(scene), *_scheduled(scene)]
+    else:
+        stages = [
+            _orientations(scene),
+            _pairs(scene, backend, algorithm),
+            _response(scene, response),
+            _walls(scene, response),
+            _wall_cull(scene, algorithm, response),
+        ]
+    stages += [_penetration(scene), Stage("recording", False, "nothing asks for recorded poses")]
     stages = _force(stages, forced or {})
     warnings = (f"APPROXIMATION: {approximated}",) if approximated else ()
     return Plan(tuple(stages), warnings)
@@ -89,6 +91,22 @@ def _pairs(scene: Scene, backend: str, algorithm: str) -> Stage:
         pairs = count * (count - 1) // 2
         return Stage("pairs", True, f"brute force: all {pairs} pairs are put to {backend} every frame")
     return Stage("pairs", True, f"{algorithm} on {backend} finds the touching pairs among {count} bodies")
+
+
+def _scheduled(scene: Scene) -> list[Stage]:
+    sizes = scene.bodies.sizes
+    if len(sizes) < 2:
+        return [Stage("pairs", False, f"there is no pair of bodies among {len(sizes)}"), Stage("walls", True, _FOLDS)]
+    grids = "cells of one size" if sizes.min() == sizes.max() else "a hierarchy of cells, one level a size class"
+    return [
+        Stage("frames", False, "events are computed, not stepped to"),
+        Stage("backend", False, "spheres are solved in closed form; no library is asked"),
+        Stage("pairs", True, f"the next hit of each body among its neighbours, from {grids} or from lists when dense"),
+        Stage("walls", True, _FOLDS),
+    ]
+
+
+_FOLDS = "the next wall of each body, from its velocity"
 
 
 def _response(scene: Scene, response: Response) -> Stage:

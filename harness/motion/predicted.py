@@ -22,7 +22,7 @@ from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene
 
 # How often a run is looked at from outside its clock; events are the same to the bit however often.
-LOOKS = 20
+LOOKS = 5
 
 
 def fly_predicted(
@@ -74,7 +74,7 @@ def fly_predicted(
         outside |= (np.abs(positions) > scene.box.half).any(axis=1)
         if depth is not None:
             depth.look(positions)
-        if look == LOOKS // 5:
+        if look == 1:
             kinetics.begin(simulation)
 
     counted = simulation.counters

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import resource
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
 from harness.motion.plan import Plan, make_plan
+from harness.motion.predicted import fly_predicted
+from harness.motion.predictive import simulation
 from harness.motion.response import Response
 from harness.motion.stepped import fly_stepped
 from harness.runner.repetition import fly_long_enough
@@ -57,27 +61,24 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     warm_up()
     clock = Clock("setup_seconds")
     scene = build_scene(point, mesh, memory)
-    backend = registry.create(point.engine.backend, point.engine.algorithm) if len(scene.bodies) > 1 else None
     plan = plan_of(point, scene)
-    if backend is not None:
-        backend.load(scene)
+    fly = _flight(point, scene, plan, traced)
     clock.lap("setup_seconds")
-
-    def fly() -> Outcome:
-        return fly_stepped(
-            scene,
-            plan,
-            backend,
-            frames=point.motion.frames,
-            dt=point.motion.dt,
-            response=point.motion.response,
-            restitution=point.motion.restitution,
-            traced=traced,
-        )
-
     outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
     return Result(metrics, plan, outcome.trace, flights)
+
+
+def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[], Outcome]:
+    """One flight of the scene, from its start, whenever it is called; what it needs is loaded."""
+    motion = point.motion
+    answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
+    if point.engine.algorithm == "predictive":
+        return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
+    backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
+    if backend is not None:
+        backend.load(scene)
+    return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt, **answers)
 
 
 def plan_of(point: Point, scene: Scene) -> Plan:
@@ -89,7 +90,7 @@ def plan_of(point: Point, scene: Scene) -> Plan:
         If the point forces a stage that cannot be forced, or its backend is missing.
     """
     approximated = None
-    if len(scene.bodies) > 1:
+    if len(scene.bodies) > 1 and point.engine.algorithm == "native":
         approximated = approximations(registry.create(point.engine.backend)).get(scene.shape)
     return make_plan(
         scene,
@@ -118,8 +119,11 @@ def warm_up() -> None:
     shapes: tuple[Shape, ...] = ("sphere", "hull")
     responses: tuple[Response, ...] = ("reflect", "elastic", "none")
     box = Box(np.full(3, 1.2))
+    simulation.warm_up()
     place(bodies.radii, box, np.random.default_rng(0), overlap=False)
-    Grid(bodies.radii, box).close_pairs(bodies.positions)
+    grid = Grid(bodies.radii, box)
+    grid.close_pairs(bodies.positions)
+    grid.cells_per_body()
     for shape in shapes:
         scene = Scene(shape, mesh, bodies, box)
         for response in responses:

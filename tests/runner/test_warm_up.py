@@ -21,6 +21,17 @@ def compiled():
     }
 
 
+@pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
+@pytest.mark.parametrize("record", [False, True])
+def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
+    warm_up()
+    execute(spheres(response=response).points[0], None)
+    before = compiled()
+    point = spheres(response=response, count=12, algorithm="predictive").points[0]
+    execute(point, None, traced=record)
+    assert compiled() == before
+
+
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 @pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
 @pytest.mark.parametrize(("count", "algorithm"), [(1, "brute-force"), (12, "brute-force"), (12, "grid")])

@@ -1,0 +1,65 @@
+"""Spheres that are near each other in the box, near each other in memory.
+
+Along a Morton curve, at the start and again from time to time. With 10^5 spheres the cache misses are most of an
+event's time, and this doubles the rate. Only the internal numbering changes; labels keep the caller's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.motion.predictive.state import LABEL, NOW, PARTNER, TIME, VX, Floats, World, X
+
+# Fewer spheres than this fit into the cache in any order.
+CROWD = 2048
+
+
+def along_curve(positions: Floats, half_box: Floats) -> NDArray[np.intp]:
+    """(n,) order of the spheres along a Morton curve of 2^21 steps a side."""
+    if len(positions) < CROWD:
+        return np.arange(len(positions))
+    place = np.clip((positions + half_box) / (2.0 * half_box.max()), 0.0, 1.0)
+    x, y, z = (spread(axis) for axis in (place * (2**21 - 1)).astype(np.uint64).T)
+    return np.argsort(x << np.uint64(2) | y << np.uint64(1) | z, kind="stable")
+
+
+def spread(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Two zeros between any two of the lowest 21 bits."""
+    for shift, mask in (
+        (32, 0x1F00000000FFFF),
+        (16, 0x1F0000FF0000FF),
+        (8, 0x100F00F00F00F00F),
+        (4, 0x10C30C30C30C30C3),
+        (2, 0x1249249249249249),
+    ):
+        bits = (bits | bits << np.uint64(shift)) & np.uint64(mask)
+    return bits
+
+
+def tidy(world: World) -> None:
+    """Put the spheres of a running world in order again; they stand in no cell afterwards."""
+    spheres, agenda, cells, lists = world.spheres, world.agenda, world.cells, world.lists
+    rows = spheres.rows
+    count = len(rows)
+    positions = rows[:, X : X + 3] + rows[:, VX : VX + 3] * (world.tally.clock[NOW] - rows[:, TIME, None])
+    order = along_curve(positions, world.rules.half_box)
+    moved_to = np.empty(count, dtype=np.int64)
+    moved_to[order] = np.arange(count)
+    leaves = agenda.times[len(agenda.times) // 2 :][:count]
+    for array in (rows, spheres.book, spheres.contacts, cells.renewals, leaves):
+        array[:] = array[order]
+    partners = spheres.marks[:, PARTNER]
+    partners[:] = np.where(partners >= 0, moved_to[partners], -1)
+    if len(lists.members):
+        lists.anchors[:] = lists.anchors[order]
+        lists.members[:, 0] = lists.members[order, 0]
+        lists.members[:, 1:] = moved_to[np.minimum(lists.members[order, 1:], count - 1)]
+    cells.heads[:] = count
+
+
+def labelled(world: World, values: Floats) -> Floats:
+    """Values by internal number, by label instead."""
+    out = np.empty_like(values)
+    out[world.spheres.marks[:, LABEL]] = values
+    return out

@@ -1,0 +1,258 @@
+"""Hard spheres in a reflecting box, flown from event to event."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from harness.errors import InputError
+from harness.motion.predictive import cells
+from harness.motion.predictive.flight import CROWDED, FULL, SPENT, UNTIDY, fly, populate
+from harness.motion.predictive.order import labelled, tidy
+from harness.motion.predictive.preparation import RESPONSES, SEARCHES, check, choose_search, lists, prepare
+from harness.motion.predictive.state import (
+    BOX_HITS,
+    CELLS,
+    CROSSINGS,
+    EPOCH,
+    EPOCH_REST,
+    FACES,
+    FRESH,
+    GUARDED,
+    KIND,
+    LOST_ENERGY,
+    LOST_ENERGY_TIME,
+    NOW,
+    PAIR_HITS,
+    PAIR_TESTS,
+    PAIR_VIRIAL,
+    PREDICTIONS,
+    RECORDED,
+    RENEWALS,
+    STALE,
+    STALLED,
+    TIME,
+    VX,
+    WALL_VIRIAL,
+    Floats,
+    X,
+)
+
+EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
+PAIR_EVENT, WALL_EVENT = 0, 1
+
+
+class Simulation:
+    """Exact motion of spheres that meet each other and the walls of a box.
+
+    Parameters
+    ----------
+    positions, velocities : (n, 3) array_like, m and m/s; the box is centred at the origin
+    radii, masses : (n,) array_like, m and kg
+    half_box : (3,) array_like, m, half the sides
+    response : 'reflect' (each velocity's normal component is mirrored), 'elastic' (impulses by mass) or 'none'
+    (spheres pass
+        through each other, and a pair event is the onset of touching)
+    restitution : of elastic pair hits, 0 to 1; walls give everything back
+    record : keep the events, for `events` and `take_events`
+    search : 'cells', 'lists', or None to choose by packing
+    """
+
+    def __init__(
+        self,
+        positions: ArrayLike,
+        velocities: ArrayLike,
+        radii: ArrayLike,
+        masses: ArrayLike,
+        half_box: ArrayLike,
+        response: str = "reflect",
+        restitution: float = 1.0,
+        record: bool = False,
+        search: str | None = None,
+    ) -> None:
+        start = check(positions, velocities, radii, masses, half_box)
+        if response not in RESPONSES:
+            raise InputError(f'response must be one of {", ".join(RESPONSES)}, not "{response}"')
+        if not 0.0 <= restitution <= 1.0:
+            raise InputError(f"restitution must lie between 0 and 1, not {restitution:g}")
+        search = search or choose_search(start, response)
+        if search not in SEARCHES or (search == "lists" and cells.size_classes(start.radii).max(initial=0) > 0):
+            raise InputError(f'search "{search}" is not possible for these spheres')
+        self._chunks: list[NDArray[np.void]] = []
+        self._world = prepare(start, response, restitution, record, search)
+        self._start = start
+        self._start_virial = self._momentum_by_position(start.positions)
+        self.time = 0.0
+        populate(self._world, False)
+
+    def __len__(self) -> int:
+        return len(self._start)
+
+    # -- motion ------------------------------------------------------------------------------------------------------
+
+    def advance(self, until: float, max_events: int | None = None) -> bool:
+        """Fly to `until` (s); what is due at that very time still happens. False if `max_events` hits came first."""
+        counts = self._world.tally.counts
+        budget = 2**62 if max_events is None else int(counts[PAIR_HITS] + counts[BOX_HITS]) + max_events
+        while (reason := fly(self._world, until, budget)) in (FULL, CROWDED, UNTIDY):
+            if reason == FULL:
+                self._chunks.append(self._drain())
+            elif reason == CROWDED:
+                self._leave_lists()
+            else:
+                tidy(self._world)
+                populate(self._world, True)
+        if reason == SPENT:
+            self.time = self._last_event_time
+            return False
+        self.time = max(self.time, until)
+        return True
+
+    def positions_at(self, time: float) -> Floats:
+        """(n, 3) positions at a time not before the last event, m. Flies there if need be; moves nothing else."""
+        if time < self._last_event_time:
+            raise ValueError(f"t = {time!r} s is past: the last event was at {self._last_event_time!r} s")
+        if time > self.time:
+            self.advance(time)
+        clock = self._world.tally.clock
+        rows = self._world.spheres.rows
+        now = (time - clock[EPOCH]) - clock[EPOCH_REST]
+        moved: Floats = rows[:, X : X + 3] + rows[:, VX : VX + 3] * (now - rows[:, TIME, None])
+        return labelled(self._world, moved)
+
+    @property
+    def positions(self) -> Floats:
+        """(n, 3) positions at `time`, m."""
+        return self.positions_at(self.time)
+
+    @property
+    def velocities(self) -> Floats:
+        """(n, 3) velocities at `time`, m/s."""
+        return labelled(self._world, self._world.spheres.rows[:, VX : VX + 3])
+
+    # -- events ------------------------------------------------------------------------------------------------------
+
+    @property
+    def events(self) -> NDArray[np.void]:
+        """All recorded events not yet taken, structured: time (s), kind (0 pair, 1 wall), i, j or -1, wall or -1."""
+        self._chunks = [np.concatenate([*self._chunks, self._drain()])]
+        return self._chunks[0]
+
+    def take_events(self) -> NDArray[np.void]:
+        """The recorded events, which are then forgotten here: to write a long run out piece by piece."""
+        taken = self.events
+        self._chunks = []
+        return taken
+
+    # -- what was counted --------------------------------------------------------------------------------------------
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """How often what happened; `events` are pair and box hits only."""
+        counts = self._world.tally.counts
+        return {
+            "events": int(counts[PAIR_HITS] + counts[BOX_HITS]),
+            "pair_hits": int(counts[PAIR_HITS]),
+            "box_hits": int(counts[BOX_HITS]),
+            "predictions": int(counts[PREDICTIONS]),
+            "pair_tests": int(counts[PAIR_TESTS]),
+            "stale_events": int(counts[STALE]),
+            "cell_crossings": int(counts[CROSSINGS]),
+            "list_renewals": int(counts[RENEWALS]),
+            "guarded_hits": int(counts[GUARDED]),
+            "stalled_events": int(counts[STALLED]),
+        }
+
+    @property
+    def search(self) -> str:
+        """Where neighbours come from: 'cells' or 'lists'."""
+        return next(name for name, method in SEARCHES.items() if method == self._world.rules.method)
+
+    # -- physics -----------------------------------------------------------------------------------------------------
+
+    @property
+    def kinetic_energy(self) -> float:
+        """Of the centres, J."""
+        return float(0.5 * (self._start.masses * (self.velocities**2).sum(axis=1)).sum())
+
+    @property
+    def collision_rate(self) -> float:
+        """Pair hits of a sphere in a second, from the start."""
+        return 2.0 * self.counters["pair_hits"] / (len(self) * self.time) if len(self) and self.time else 0.0
+
+    @property
+    def wall_impulses(self) -> Floats:
+        """(6,) impulses given to x-, x+, y-, y+, z-, z+ since the start, kg m/s."""
+        impulses: Floats = self._world.tally.sums[FACES : FACES + 6].copy()
+        return impulses
+
+    @property
+    def pair_impulses(self) -> float:
+        """Sum over pair hits of |impulse| times the distance of centres, kg m^2/s (its likeness for 'reflect')."""
+        return float(self._world.tally.sums[PAIR_VIRIAL])
+
+    @property
+    def pressure(self) -> float:
+        """Mean force on the walls to the area their centres can reach, (side - mean diameter)^2, Pa."""
+        if not len(self) or not self.time:
+            return 0.0
+        sides = 2.0 * np.maximum(self._start.half_box - self._start.radii.mean(), 0.0)
+        area = 2.0 * (sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0])
+        return float(self.wall_impulses.sum() / (self.time * area)) if area else inf
+
+    @property
+    def virial_residual(self) -> float:
+        """Imbalance of d(sum m r.v) = 2 KE T + sum |dp| r12 - sum |dp| a/2, to the second of these terms."""
+        sums = self._world.tally.sums
+        change = self._momentum_by_position(self.positions) - self._start_virial
+        action = 2.0 * (self.kinetic_energy * self.time + float(sums[LOST_ENERGY_TIME]))
+        balance = change - action - float(sums[PAIR_VIRIAL]) + float(sums[WALL_VIRIAL])
+        return balance / action if action else 0.0
+
+    @property
+    def lost_energy(self) -> float:
+        """Kinetic energy that inelastic hits took, J."""
+        return float(self._world.tally.sums[LOST_ENERGY])
+
+    # -- inside ------------------------------------------------------------------------------------------------------
+
+    @property
+    def _last_event_time(self) -> float:
+        clock = self._world.tally.clock
+        return float(clock[EPOCH] + (clock[EPOCH_REST] + clock[NOW]))
+
+    def _momentum_by_position(self, positions: Floats) -> float:
+        return float((self._start.masses * (positions * self.velocities).sum(axis=1)).sum())
+
+    def _drain(self) -> NDArray[np.void]:
+        journal, counts = self._world.journal, self._world.tally.counts
+        chunk = np.empty(int(counts[RECORDED]), dtype=EVENT)
+        for name, column in zip(EVENT.names or (), journal, strict=True):
+            chunk[name] = np.asarray(column)[: len(chunk)]
+        counts[RECORDED] = 0
+        return chunk
+
+    def _leave_lists(self) -> None:
+        """A crowd too thick for neighbour lists (spheres on top of each other): go on with cells from this moment."""
+        world = self._world
+        now = float(world.tally.clock[NOW])
+        rows = world.spheres.rows
+        rows[:, X : X + 3] += rows[:, VX : VX + 3] * (now - rows[:, TIME, None])
+        rows[:, TIME] = now
+        leaves = len(world.agenda.times) // 2
+        world.spheres.marks[:, KIND] = FRESH
+        world.agenda.times[leaves : leaves + len(self)] = now
+        self._world = world._replace(
+            cells=cells.build(self._start.half_box, self._start.radii, 0.0),
+            lists=lists(rows, CELLS),
+            rules=world.rules._replace(method=CELLS, skin=0.0),
+        )
+        populate(self._world, False)
+
+
+def warm_up() -> None:
+    """Compile, or load from disk, everything a run needs."""
+    simulation = Simulation(np.zeros((1, 3)), np.zeros((1, 3)), [0.5], [1.0], np.ones(3))
+    simulation.advance(0.0)
