@@ -33,11 +33,15 @@ class Estimate:
         self._known[job.key] = seconds
 
     def left(self, jobs: Iterable[Job]) -> float | None:
-        """Seconds of all these jobs, one after another; the unknown take as long as the known do on average."""
+        """Seconds of all these jobs, one after another; the unknown take as long as the known do on average.
+
+        None where nothing is known, of these or of any other point of their experiments.
+        """
         each = [self.of(job) for job in jobs]
-        known = [seconds for seconds in each if seconds is not None]
         if not each:
             return 0.0
+        known = [seconds for seconds in each if seconds is not None]
+        known = known or [self._known[key] for key in self._texts if key in self._known]
         return sum(known) / len(known) * len(each) if known else None
 
 

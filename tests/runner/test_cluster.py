@@ -1,0 +1,140 @@
+"""The same runs on the workers of a real Dask scheduler: the same counters, whatever happens to a worker."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import ExitStack
+
+import psutil
+import pytest
+
+from harness.cli.main import main
+from harness.measure.metrics import METRICS
+from harness.store import tables
+
+pytest.importorskip("distributed")
+
+EXPERIMENT = """
+title: On a cluster
+scene: {mesh: cube.ply, shape: hull, count: 6, box: [6, 6, 6]}
+motion: {duration: 1}
+sweep: {count: [4, 8, 16]}
+measure: {repeats: 2}
+"""
+
+
+class LocalScheduler:
+    """A scheduler and two workers, each a process of its own, as on a cluster. A context."""
+
+    def __init__(self, folder):
+        self._folder, self._open = folder, ExitStack()
+
+    def __enter__(self):
+        file = self._folder / "scheduler.json"
+        self._start("scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+        deadline = time.monotonic() + 30
+        while not file.exists() or not file.read_text():
+            assert time.monotonic() < deadline, "no scheduler"
+            time.sleep(0.05)
+        self.address = json.loads(file.read_text())["address"]
+        self.workers = [
+            self._start("worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(2)
+        ]
+        return self
+
+    def __exit__(self, *_):
+        self._open.close()
+
+    def _start(self, *words):
+        process = subprocess.Popen(
+            [sys.executable, "-m", "dask", *words],
+            cwd=self._folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        self._open.callback(process.wait)
+        self._open.callback(process.kill)
+        return process
+
+
+@pytest.fixture
+def small(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "small.yaml").write_text(EXPERIMENT)
+    return tmp_path
+
+
+def counted(database):
+    """Everything exact that a sweep has measured, by experiment, point and repeat."""
+    exact = [name for name, metric in METRICS.items() if metric.kind in ("counter", "error")]
+    return {
+        (run.experiment, run.point, run.repeat): {name: run.metrics[name] for name in exact if name in run.metrics}
+        for run in tables.run_records(database)
+    }
+
+
+def test_a_cluster_counts_what_one_machine_counts_to_the_bit_even_if_a_worker_dies(small, plugin, capfd):
+    """One of the two workers is killed by a run that it has in hand; its runs are done by the other."""
+    plugin(
+        "kills",
+        f"""
+        note = {str(small / "killed")!r}
+        if not os.path.exists(note):
+            open(note, "w").write("")
+            server = os.getppid()
+            worker = int(open(f"/proc/{{server}}/stat").read().split()[3])
+            os.kill(worker, signal.SIGKILL)
+            time.sleep(30)
+        """,
+    )
+    (small / "kills.yaml").write_text(EXPERIMENT.split("zip")[0] + "engine: {backend: kills, algorithm: native}\n")
+    with LocalScheduler(small) as cluster:
+        assert main(["sweep", "kills.yaml", "small.yaml", "--db", "cluster.db", "--cluster", cluster.address]) == 0
+        dead = [worker for worker in cluster.workers if worker.poll() is not None]
+        assert [worker.returncode for worker in dead] == [-signal.SIGKILL]
+    assert (small / "killed").exists()
+    assert main(["sweep", "kills.yaml", "small.yaml", "--db", "alone.db"]) == 0
+    assert counted("cluster.db") == counted("alone.db") != {}
+
+    together, alone = tables.runs("cluster.db"), tables.runs("alone.db")
+    assert not together["timing_grade"].any()  # two workers share this machine
+    assert alone["timing_grade"].all()
+    assert set(together["machine"]).isdisjoint(alone["machine"])  # times of the two are never paired
+    facts = tables.machines("cluster.db")
+    assert {facts[machine]["host"] for machine in together["machine"]} == {os.uname().nodename}
+
+
+def test_jobs_is_the_same_path_on_this_machine_and_leaves_nothing_running(small):
+    assert main(["sweep", "small.yaml", "--db", "two.db", "--jobs", "2"]) == 0
+    assert len(counted("two.db")) == 6
+    left = [" ".join(child.cmdline()) for child in psutil.Process().children(recursive=True)]
+    assert not any("harness.runner.server" in command for command in left)
+
+
+def test_a_worker_with_other_sources_is_refused_before_any_run(small, capsys, monkeypatch):
+    monkeypatch.setattr("harness.runner.cluster.sources_hash", lambda: "0" * 64)
+    assert main(["sweep", "small.yaml", "--db", "other.db", "--cluster", "local:1"]) == 2
+    assert "runs another version of harness" in capsys.readouterr().err
+    assert len(tables.runs("other.db")) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--cluster", "tcp://127.0.0.1:9"], "no scheduler answers"),
+        (["--cluster", "nowhere"], "must be tcp://HOST:PORT or local:N"),
+        (["--jobs", "0"], "invalid number value"),
+    ],
+)
+def test_a_cluster_that_is_not_there_is_a_sentence(small, capsys, monkeypatch, words, said):
+    monkeypatch.setattr("harness.runner.cluster.CONNECT_TIMEOUT", 0.5)
+    assert exit_code(["sweep", "small.yaml", *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+def exit_code(words):
+    try:
+        return main(words)
+    except SystemExit as error:  # argparse
+        return error.code
