@@ -36,6 +36,9 @@ def inner(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 
+# Where kernels, and the constants that are compiled into them, stand.
+_ROOMS = ("broadphase", "measure", "motion", "narrowphase", "scene")
+
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
 # `nsz` concern divisions and the sign of zero.
 _RELAXED = {"contract", "arcp", "nsz"}
@@ -86,10 +89,8 @@ def _own_cache() -> Iterator[None]:
 def _cache_folder() -> str:
     package = Path(__file__).resolve().parent
     sources = hashlib.sha256()
-    for file in sorted(package.rglob("*.py")):
-        content = file.read_bytes()
-        if b"harness.kernel import" in content or file.name == "kernel.py":
-            sources.update(content)
+    for file in [Path(__file__), *(file for room in _ROOMS for file in sorted((package / room).rglob("*.py")))]:
+        sources.update(file.read_bytes())
     name = f"kernels-{sources.hexdigest()[:16]}"
     beside = package / "__pycache__"
     writable = os.access(beside if beside.exists() else package, os.W_OK)

@@ -1,0 +1,1 @@
+"""Complete detectors behind one protocol, a file each."""

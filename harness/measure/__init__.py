@@ -1,0 +1,1 @@
+"""Metrics, clocks, statistics, theory and verdicts."""

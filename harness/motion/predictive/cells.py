@@ -160,10 +160,10 @@ def gather_cell(cells: Cells, cell: int, found: Indices, n: int) -> int:
 
 
 @step
-def gather_around(
-    cells: Cells, grid: int, ix: int, iy: int, iz: int, axis: int, step: int, found: Indices, n: int
-) -> int:
-    """Append the spheres of the 27 cells around one, or of the layer of 9 that lies ahead along an axis."""
+def block(
+    cells: Cells, grid: int, ix: int, iy: int, iz: int, axis: int, step: int
+) -> tuple[int, int, int, int, int, int]:
+    """First and last cell, on each axis, of the 27 around one, or of the layer of 9 that lies ahead along an axis."""
     shapes = cells.shapes
     from_x, to_x = max(ix - 1, 0), min(ix + 1, shapes[grid, 0] - 1)
     from_y, to_y = max(iy - 1, 0), min(iy + 1, shapes[grid, 1] - 1)
@@ -174,6 +174,15 @@ def gather_around(
         from_y, to_y = max(from_y, iy + step), min(to_y, iy + step)
     elif axis == 2:
         from_z, to_z = max(from_z, iz + step), min(to_z, iz + step)
+    return from_x, to_x, from_y, to_y, from_z, to_z
+
+
+@step
+def gather_around(
+    cells: Cells, grid: int, ix: int, iy: int, iz: int, axis: int, step: int, found: Indices, n: int
+) -> int:
+    """Append the spheres of the 27 cells around one, or of the layer of 9 that lies ahead along an axis."""
+    from_x, to_x, from_y, to_y, from_z, to_z = block(cells, grid, ix, iy, iz, axis, step)
     for x in range(from_x, to_x + 1):
         for y in range(from_y, to_y + 1):
             cell = cell_number(cells, grid, x, y, 0)

@@ -14,33 +14,27 @@ import numpy as np
 
 from harness.kernel import loop, step
 from harness.motion.predictive import tournament
-from harness.motion.predictive.burst import defer_if_stalled, note_hit
+from harness.motion.predictive.burst import defer_if_stalled
 from harness.motion.predictive.cells import ALL, gather_around, gather_ball, index, insert, remove, settle
 from harness.motion.predictive.clock import catch_up, rebase, relative
+from harness.motion.predictive.hits import begin_to_touch, hit_pair, hit_wall
 from harness.motion.predictive.lookahead import look_ahead
 from harness.motion.predictive.neighbours import renew, time_to_leave
-from harness.motion.predictive.numerics import approaches, time_to_plane
-from harness.motion.predictive.response import bounce, flip
+from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.search import first_onset, first_touch
 from harness.motion.predictive.state import (
     BOX_HITS,
     CELLS,
     CROSSING,
     CROSSINGS,
-    ELASTIC,
-    FACES,
     GRID,
-    GUARDED,
     HITS,
     KIND,
     LABEL,
     LISTS,
-    LOST_ENERGY,
-    LOST_ENERGY_TIME,
     MARK,
     MARK_I,
     MARK_J,
-    MASS,
     NONE,
     NOTHING,
     NOW,
@@ -48,7 +42,6 @@ from harness.motion.predictive.state import (
     PAIR_HITS,
     PAIR_TESTS,
     PAIR_TIME,
-    PAIR_VIRIAL,
     PARTNER,
     PARTNER_HITS,
     PLACE,
@@ -63,11 +56,9 @@ from harness.motion.predictive.state import (
     TIME,
     VX,
     WALL,
-    WALL_VIRIAL,
     World,
     X,
 )
-from harness.motion.predictive.tally import absolute, add
 
 # Why the loop returned.
 REACHED, SPENT, FULL, CROWDED, UNTIDY = range(5)
@@ -161,96 +152,6 @@ def happen(world: World, k: int, now: float) -> tuple[int, int, int]:
         if not renew(world.cells, world.lists, rows, marks, k, world.rules.skin, world.scratch.candidates):
             axis = -1
     return other, axis, step
-
-
-@step
-def hit_pair(world: World, k: int, p: int, now: float) -> bool:
-    """Answer a pair if it still approaches. The labels order the two, so that it does not matter who held the event."""
-    spheres, rules, tally = world.spheres, world.rules, world.tally
-    rows = spheres.rows
-    catch_up(world, k, now)
-    catch_up(world, p, now)
-    if not approaches(
-        rows[p, X] - rows[k, X],
-        rows[p, X + 1] - rows[k, X + 1],
-        rows[p, X + 2] - rows[k, X + 2],
-        rows[p, VX] - rows[k, VX],
-        rows[p, VX + 1] - rows[k, VX + 1],
-        rows[p, VX + 2] - rows[k, VX + 2],
-    ):
-        return False
-    swap = spheres.marks[p, LABEL] < spheres.marks[k, LABEL]
-    i = p if swap else k
-    j = k if swap else p
-    if rules.response == ELASTIC:
-        restitution = rules.restitution
-        if restitution < 1.0:
-            # TC model: a contact so soon after another belongs to the same lasting contact, and loses nothing more
-            if now - max(spheres.contacts[i], spheres.contacts[j]) < rules.contact_time:
-                restitution = 1.0
-                tally.counts[GUARDED] += 1
-            spheres.contacts[i] = now
-            spheres.contacts[j] = now
-        virial, lost = bounce(rows, spheres.book, i, j, restitution)
-        if lost > 0.0:
-            add(tally, LOST_ENERGY, lost)
-            add(tally, LOST_ENERGY_TIME, lost * absolute(tally.clock, now))
-    else:
-        virial = flip(rows, spheres.book, i, j)
-    add(tally, PAIR_VIRIAL, virial)
-    note_hit(world, i, now, rules.blink)
-    note_hit(world, j, now, rules.blink)
-    tally.counts[PAIR_HITS] += 1
-    record(world, now, 0, spheres.marks[i, LABEL], spheres.marks[j, LABEL], -1)
-    return True
-
-
-@step
-def begin_to_touch(world: World, k: int, p: int, now: float) -> None:
-    """Nothing answers: note the onset, once, although both spheres may hold it."""
-    counts, clock = world.tally.counts, world.tally.clock
-    i = min(world.spheres.marks[k, LABEL], world.spheres.marks[p, LABEL])
-    j = max(world.spheres.marks[k, LABEL], world.spheres.marks[p, LABEL])
-    if now != clock[MARK] or i != counts[MARK_I] or j != counts[MARK_J]:
-        clock[MARK] = now
-        counts[MARK_I] = i
-        counts[MARK_J] = j
-        counts[PAIR_HITS] += 1
-        record(world, now, 0, i, j, -1)
-
-
-@step
-def hit_wall(world: World, k: int, face: int, now: float) -> None:
-    """Mirror sphere k's velocity at a face (x-, x+, y-, y+, z-, z+)."""
-    rows, tally = world.spheres.rows, world.tally
-    axis = face // 2
-    plane = world.rules.half_box[axis] - rows[k, RADIUS]
-    inside = abs(rows[k, X + axis]) <= plane
-    catch_up(world, k, now)
-    if inside:
-        # Exactly on the plane: what time rounds away at any speed cannot add up to an escape
-        rows[k, X + axis] = plane if face % 2 == 1 else -plane
-    impulse = 2.0 * world.spheres.book[k, MASS] * abs(rows[k, VX + axis])
-    rows[k, VX + axis] = -rows[k, VX + axis]
-    add(tally, FACES + face, impulse)
-    add(tally, WALL_VIRIAL, impulse * rows[k, X + axis] * (1.0 if face % 2 == 1 else -1.0))
-    note_hit(world, k, now, 0.0)
-    tally.counts[BOX_HITS] += 1
-    record(world, now, 1, world.spheres.marks[k, LABEL], -1, face)
-
-
-@step
-def record(world: World, now: float, kind: int, i: int, j: int, wall: int) -> None:
-    """Write an event down, if somebody reads it."""
-    journal, counts = world.journal, world.tally.counts
-    if journal.times.size > 0:
-        place = counts[RECORDED]
-        journal.times[place] = absolute(world.tally.clock, now)
-        journal.kinds[place] = kind
-        journal.first[place] = i
-        journal.second[place] = j
-        journal.walls[place] = wall
-        counts[RECORDED] += 1
 
 
 @step

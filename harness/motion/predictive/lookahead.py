@@ -7,9 +7,9 @@ shows who is due soon; asking early costs a few instructions.
 from __future__ import annotations
 
 from harness.kernel import step
-from harness.motion.predictive.cells import cell_number
+from harness.motion.predictive.cells import ALL, block, cell_number
 from harness.motion.predictive.memory import fetch
-from harness.motion.predictive.state import CROSSING, GRID, KIND, LISTS, PARTNER, PLACE, World
+from harness.motion.predictive.state import CROSSING, GRID, KIND, LISTS, PARTNER, PLACE, RENEWAL, Cells, Ints, World
 
 # Levels of the tree at which a winner's row, its surroundings, and its neighbours' rows are asked for.
 SPHERE_LEVEL, AROUND_LEVEL, NEIGHBOURS_LEVEL = 6, 5, 4
@@ -32,21 +32,35 @@ def look_ahead(world: World, k: int) -> None:
 
 @step
 def fetch_neighbours(world: World, k: int) -> None:
-    """Ask for the rows of sphere k's neighbours; a crossing needs few of them."""
+    """Ask for the rows of sphere k's neighbours."""
     rows, marks, cells, members = world.spheres.rows, world.spheres.marks, world.cells, world.lists.members
     if world.rules.method == LISTS:
         for m in range(1, min(members[k, 0], 15) + 1):
             fetch(rows, members[k, m])
-    elif marks[k, KIND] < CROSSING:
-        shapes = cells.shapes
-        grid = marks[k, GRID]
-        ix, iy, iz = marks[k, PLACE], marks[k, PLACE + 1], marks[k, PLACE + 2]
-        for x in range(max(ix - 1, 0), min(ix + 1, shapes[grid, 0] - 1) + 1):
-            for y in range(max(iy - 1, 0), min(iy + 1, shapes[grid, 1] - 1) + 1):
-                for z in range(max(iz - 1, 0), min(iz + 1, shapes[grid, 2] - 1) + 1):
-                    p = cells.heads[cell_number(cells, grid, x, y, z)]
+    else:
+        from_x, to_x, from_y, to_y, from_z, to_z = cells_ahead(cells, marks, k)
+        for x in range(from_x, to_x + 1):
+            for y in range(from_y, to_y + 1):
+                for z in range(from_z, to_z + 1):
+                    p = cells.heads[cell_number(cells, marks[k, GRID], x, y, z)]
                     fetch(rows, p)
                     fetch(cells.following, p)
+
+
+@step
+def cells_ahead(cells: Cells, marks: Ints, k: int) -> tuple[int, int, int, int, int, int]:
+    """The cells that sphere k will look at: the layer beyond the next one if it is to cross, else all around."""
+    kind = int(marks[k, KIND])
+    ix, iy, iz = int(marks[k, PLACE]), int(marks[k, PLACE + 1]), int(marks[k, PLACE + 2])
+    axis = ALL
+    step = 0
+    if kind >= CROSSING and kind < RENEWAL:
+        axis = (kind - CROSSING) // 2
+        step = 2 * ((kind - CROSSING) % 2) - 1
+        ix += step if axis == 0 else 0
+        iy += step if axis == 1 else 0
+        iz += step if axis == 2 else 0
+    return block(cells, marks[k, GRID], ix, iy, iz, axis, step)
 
 
 @step
@@ -65,9 +79,7 @@ def fetch_around(world: World, k: int) -> None:
             fetch(world.lists.members, partner)
     else:
         cells = world.cells
-        shapes = cells.shapes
-        grid = marks[k, GRID]
-        ix, iy, iz = marks[k, PLACE], marks[k, PLACE + 1], marks[k, PLACE + 2]
-        for x in range(max(ix - 1, 0), min(ix + 1, shapes[grid, 0] - 1) + 1):
-            for y in range(max(iy - 1, 0), min(iy + 1, shapes[grid, 1] - 1) + 1):
-                fetch(cells.heads, cell_number(cells, grid, x, y, iz))
+        from_x, to_x, from_y, to_y, from_z, _ = cells_ahead(cells, marks, k)
+        for x in range(from_x, to_x + 1):
+            for y in range(from_y, to_y + 1):
+                fetch(cells.heads, cell_number(cells, marks[k, GRID], x, y, from_z))

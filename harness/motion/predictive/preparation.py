@@ -53,7 +53,7 @@ LEAST = 64
 # the cache.
 MULTITUDE = {CELLS: 20_000, LISTS: 4_000}
 # Skin of the lists, in mean diameters.
-SKIN = 0.5
+SKIN = 0.65
 # A pair hit this soon after another, in the time a mean sphere flies its radius, is part of one lasting contact (TC
 # model).
 CONTACT = 1e-6
@@ -63,7 +63,7 @@ PAUSE = 1e-3
 BURST = {NONE: 1000, REFLECT: 1000, ELASTIC: 1_000_000}
 # Events to one re-basing of time, for each sphere and for each run; with response none every sphere must look again
 # then.
-SPAN, SPAN_NONE, SPAN_LEAST = 4, 64, 64
+SPAN, SPAN_NONE, SPAN_LEAST = 16, 64, 64
 # Re-basings to one re-ordering of memory.
 TIDYING = 8
 # Gaps below this fraction of the box are rounding.

@@ -81,7 +81,7 @@ class Simulation:
         if search not in SEARCHES or (search == "lists" and cells.size_classes(start.radii).max(initial=0) > 0):
             raise InputError(f'search "{search}" is not possible for these spheres')
         self._chunks: list[NDArray[np.void]] = []
-        self._world = prepare(start, response, restitution, record, search)
+        self._world = prepare(start, response, float(restitution), record, search)
         self._start = start
         self._start_virial = self._momentum_by_position(start.positions)
         self.time = 0.0
@@ -96,7 +96,7 @@ class Simulation:
         """Fly to `until` (s); what is due at that very time still happens. False if `max_events` hits came first."""
         counts = self._world.tally.counts
         budget = 2**62 if max_events is None else int(counts[PAIR_HITS] + counts[BOX_HITS]) + max_events
-        while (reason := fly(self._world, until, budget)) in (FULL, CROWDED, UNTIDY):
+        while (reason := fly(self._world, float(until), budget)) in (FULL, CROWDED, UNTIDY):
             if reason == FULL:
                 self._chunks.append(self._drain())
             elif reason == CROWDED:

@@ -1,0 +1,1 @@
+"""Predictive scheduling: exact motion of spheres from event to event."""
