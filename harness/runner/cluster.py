@@ -7,11 +7,12 @@ runs of a worker that dies are done by another. Needs the extra `cluster`.
 from __future__ import annotations
 
 import logging
+import signal
 import socket
 import threading
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import cache
@@ -185,15 +186,29 @@ class Cluster:
                 return self._open.enter_context(Client(self._address, timeout=CONNECT_TIMEOUT))
             except (OSError, ValueError) as error:
                 raise InputError(f"{self._option}: no scheduler answers: {error}") from error
-        cluster = LocalCluster(
-            n_workers=int(self._address.removeprefix(LOCAL)),
-            threads_per_worker=1,
-            memory_limit=0,  # runs have limits of their own
-            dashboard_address=None,
-            silence_logs=logging.CRITICAL,
-        )
+        with _inherited_by_children(signal.SIGINT, signal.SIG_IGN):  # the sweeping process answers Ctrl-C
+            cluster = LocalCluster(
+                n_workers=int(self._address.removeprefix(LOCAL)),
+                threads_per_worker=1,
+                memory_limit=0,  # runs have limits of their own
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+            )
         self._open.enter_context(cluster)
         return self._open.enter_context(Client(cluster))
+
+
+@contextmanager
+def _inherited_by_children(number: signal.Signals, disposition: signal.Handlers) -> Iterator[None]:
+    """What processes started meanwhile do about a signal; only a program's main thread can say it."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    ours = signal.signal(number, disposition)
+    try:
+        yield
+    finally:
+        signal.signal(number, ours)
 
 
 @dataclass(frozen=True)

@@ -30,32 +30,35 @@ def main() -> None:
     if os.getppid() != parent:
         return
     adopt_orphans()
+    with suppress(EOFError, ConnectionError):  # the other side has gone
+        _prepare(channel, sys.argv[2])
+        _serve(channel)
+
+
+def _prepare(channel: Connection, backend: str) -> None:
+    """Compile and import what the runs need, telling the other side how far it is."""
     warm_up()
     channel.send("warm")
-    if sys.argv[2] in registry.names():
+    if backend in registry.names():
         with suppress(BaseException):  # a run will say it, in its report
-            registry.create(sys.argv[2])
+            registry.create(backend)
     gc.collect()
     gc.freeze()  # so that the collector of a run does not look at, and copy, what the server holds
     channel.send("ready")
     die_with_parent(False)
-    _serve(channel)
 
 
 def _serve(channel: Connection) -> None:
     meshes: dict[str, Mesh] = {}
     while True:
-        try:
-            received = channel.recv()
-            if isinstance(received, Mesh):
-                meshes[received.digest] = received
-                continue
-            report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
-            if report is None:
-                return
-            channel.send(report)
-        except (EOFError, OSError):
+        received = channel.recv()
+        if isinstance(received, Mesh):
+            meshes[received.digest] = received
+            continue
+        report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
+        if report is None:
             return
+        channel.send(report)
 
 
 if __name__ == "__main__":

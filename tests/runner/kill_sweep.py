@@ -75,11 +75,11 @@ class Killed:
         (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: leaves\nVersion: 1.0\n")
         (metadata / "entry_points.txt").write_text("[harness.backends]\nleaves = leaves_backend:Leaves\n")
 
-    def start(self) -> subprocess.Popen[str]:
+    def start(self, *options: str) -> subprocess.Popen[str]:
         """The real command, in a group of its own."""
         path = os.pathsep.join(filter(None, [str(self.folder), os.environ.get("PYTHONPATH", "")]))
         return subprocess.Popen(
-            [sys.executable, "-m", "harness", "sweep", "kill.yaml", "--db", "kill.db", "--verbose"],
+            [sys.executable, "-m", "harness", "sweep", "kill.yaml", "--db", "kill.db", "--verbose", *options],
             cwd=self.folder, env=os.environ | {MARK: self.mark, "PYTHONPATH": path}, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
         )  # fmt: skip

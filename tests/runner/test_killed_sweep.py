@@ -25,8 +25,9 @@ def test_a_sweep_killed_at_random_moments_loses_nothing_and_leaves_no_process(ki
     assert killed.all_gone()
 
 
-def test_ctrl_c_ends_every_process_keeps_what_is_done_and_says_how_to_go_on(killed):
-    sweep = killed.start()
+@pytest.mark.parametrize("jobs", [[], ["--jobs", "2"]])
+def test_ctrl_c_ends_every_process_keeps_what_is_done_and_says_how_to_go_on(killed, jobs):
+    sweep = killed.start(*jobs)
     lines = []
     while not lines or "): ok" not in lines[-1] or "control" in lines[-1]:
         lines.append(sweep.stderr.readline())
