@@ -19,6 +19,11 @@ from harness.motion.hits import Trace
 from harness.motion.plan import Plan, make_plan
 from harness.motion.response import Response
 from harness.motion.stepped import fly_stepped
+from harness.narrowphase.containment import Containment
+from harness.narrowphase.gjk import MARGIN
+from harness.narrowphase.hull_pairs import HullPairs
+from harness.narrowphase.mesh_pairs import MeshPairs
+from harness.narrowphase.placement import Places
 from harness.runner.setting import build_scene
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
@@ -113,7 +118,11 @@ def warm_up() -> None:
     responses: tuple[Response, ...] = ("reflect", "elastic", "none")
     box = Box(np.full(3, 1.2))
     place(bodies.radii, box, np.random.default_rng(0), overlap=False)
-    Grid(bodies.radii, box).close_pairs(bodies.positions)
+    close = Grid(bodies.radii, box).close_pairs(bodies.positions)
+    placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
+    HullPairs(hull, MARGIN).settle(close, placement)
+    MeshPairs(mesh).cross(close, placement)
+    Containment(mesh).contained(np.array([[0, 1]]), placement)
     for shape in shapes:
         scene = Scene(shape, mesh, bodies, box)
         for response in responses:
