@@ -1,7 +1,8 @@
-"""A proof that two surfaces touch: an edge of one that passes through a triangle of the other.
+"""Proofs that two surfaces touch, or that they do not.
 
-The proof is sought where parts of the surfaces are deepest in each other: most surfaces that touch are through each
-other somewhere, and one such place is enough. Finding none proves nothing.
+That they touch is proved by an edge of one that passes through a triangle of the other. It is sought where parts of the
+surfaces are deepest in each other: most surfaces that touch are through each other somewhere, and one such place is
+enough. That they do not touch is proved when every part of one has been seen to be apart from every part of the other.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from harness.kernel import inner, kernel
 from harness.narrowphase.gjk import Relative
 from harness.narrowphase.triangle_tree import TriangleTree
 from harness.narrowphase.vectors import Vector, cross, dot, minus, plus, scaled, turned
+
+CROSSING, APART, UNSURE = 1, 0, 2
 
 Triangle = tuple[Vector, Vector, Vector]
 Disc = tuple[Vector, float, Vector, float]
@@ -34,43 +37,49 @@ def find_crossing(
     margin: float,
     most: int,
     stack: Ints,
-) -> tuple[int, int]:
-    """A triangle of each surface, one of which an edge of the other passes through.
+) -> tuple[int, int, int]:
+    """Whether the parts of two surfaces below two nodes touch.
 
     Parameters
     ----------
     tree_a, tree_b : TriangleTree
     pose : Relative
-    start_a, start_b : nodes below which to look
-    margin : how far the edge must reach through, and stay off the triangle's border
+    start_a, start_b : the nodes
+    margin : how far an edge must reach through a triangle and stay off its border, and how far apart parts must be
     most : steps after which to give up
     stack : (DEPTH, 2) int array, written
 
     Returns
     -------
-    The leaves of the two triangles; -1 if no crossing was found.
+    CROSSING and the leaves of two triangles that do; or APART, or UNSURE, and nothing of meaning.
     """
     stack[0, 0], stack[0, 1] = start_a, start_b
-    height, steps = 1, 0
-    while height > 0 and steps < most:
+    height, steps, verdict = 1, 0, APART
+    while height > 0:
+        if steps >= most:
+            return UNSURE, -1, -1
         height -= 1
         a, b = stack[height, 0], stack[height, 1]
         right_a, right_b = tree_a.right[a], tree_b.right[b]
         if right_a < 0 and right_b < 0:
             steps += TRIANGLES
-            if crossing(triangle_a(tree_a, pose, -1 - right_a), triangle_b(tree_b, pose, -1 - right_b), margin):
-                return a, b
+            found = meeting(triangle_a(tree_a, pose, -1 - right_a), triangle_b(tree_b, pose, -1 - right_b), margin)
+            if found == CROSSING:
+                return CROSSING, a, b
+            verdict = max(verdict, found)
             continue
         steps += 1
         larger_a = right_a >= 0 and tree_a.discs[a, 3] * pose.size_a >= tree_b.discs[b, 3] * pose.size_b
         if right_b < 0 or larger_a:
             a0, b0, a1, b1 = a + 1, b, right_a, b
             disc_b = placed_b(tree_b, pose, b)
-            near0, near1 = nearness(placed_a(tree_a, pose, a0), disc_b), nearness(placed_a(tree_a, pose, a1), disc_b)
+            near0 = nearness(placed_a(tree_a, pose, a0), disc_b, margin)
+            near1 = nearness(placed_a(tree_a, pose, a1), disc_b, margin)
         else:
             a0, b0, a1, b1 = a, b + 1, a, right_b
             disc_a = placed_a(tree_a, pose, a)
-            near0, near1 = nearness(disc_a, placed_b(tree_b, pose, b0)), nearness(disc_a, placed_b(tree_b, pose, b1))
+            near0 = nearness(disc_a, placed_b(tree_b, pose, b0), margin)
+            near1 = nearness(disc_a, placed_b(tree_b, pose, b1), margin)
         if near0 > near1:  # the deeper one goes on top
             a0, b0, near0, a1, b1, near1 = a1, b1, near1, a0, b0, near0
         if near1 < 1.0:
@@ -79,25 +88,27 @@ def find_crossing(
         if near0 < 1.0:
             stack[height, 0], stack[height, 1] = a0, b0
             height += 1
-    return -1, -1
+    return verdict, -1, -1
 
 
 @kernel
-def nearness(one: Disc, two: Disc) -> float:
-    """How near two discs are, squared: the smaller, the deeper they are in each other; from 1 on they are apart."""
+def nearness(one: Disc, two: Disc, margin: float) -> float:
+    """How near two discs are, squared: the smaller, the deeper they are in each other. 1 if they are a margin apart."""
     between = minus(two[0], one[0])
-    radii = one[1] + two[1]
     squared = dot(between, between)
-    if squared >= radii * radii:
-        return 1.0
     cosine = dot(one[2], two[2])
     sine = sqrt(max(0.0, 1.0 - cosine * cosine)) + 1e-7  # more than rounding takes from it
     cosine = abs(cosine)
     along_one, along_two = dot(one[2], between), dot(two[2], between)
-    reach_one = one[3] + two[3] * cosine + two[1] * sine
-    reach_two = two[3] + one[3] * cosine + one[1] * sine
-    slabs = max(along_one * along_one / (reach_one * reach_one), along_two * along_two / (reach_two * reach_two))
-    return max(squared / (radii * radii), slabs)
+    reach = one[1] + two[1] + margin
+    reach_one = one[3] + two[3] * cosine + two[1] * sine + margin
+    reach_two = two[3] + one[3] * cosine + one[1] * sine + margin
+    apart = (
+        (squared >= reach * reach)
+        | (along_one * along_one >= reach_one * reach_one)
+        | (along_two * along_two >= reach_two * reach_two)
+    )
+    return 1.0 if apart else squared / (reach * reach)
 
 
 @inner
@@ -136,26 +147,57 @@ def triangle_b(tree: TriangleTree, pose: Relative, k: int) -> Triangle:
 
 
 @kernel
-def crossing(one: Triangle, other: Triangle, margin: float) -> bool:
-    """Whether an edge of either triangle passes through the other by more than a margin on every side."""
-    return pierced(one, other, margin) or pierced(other, one, margin)
+def meeting(one: Triangle, other: Triangle, margin: float) -> int:
+    """CROSSING if an edge of either triangle passes through the other by more than a margin on every side, APART if
+    there is a wider gap between them, else UNSURE."""
+    first = pierced(one, other, margin)
+    if first != UNSURE:
+        return first
+    second = pierced(other, one, margin)
+    if second != UNSURE:
+        return second
+    return APART if parted(one, other, margin) else UNSURE
 
 
 @kernel
-def pierced(face: Triangle, edges: Triangle, margin: float) -> bool:
-    """Whether an edge of the second triangle passes through the first."""
+def pierced(face: Triangle, edges: Triangle, margin: float) -> int:
+    """CROSSING if an edge of the second triangle passes through the first, APART if its plane parts them."""
     a, b, c = face
-    normal = cross(minus(b, a), minus(c, a))
-    needed = margin * sqrt(dot(normal, normal))
+    left, right = minus(b, a), minus(c, a)
+    normal = cross(left, right)
+    # not by the length of the normal, which is as small as its rounding if the triangle is a needle
+    needed = margin * sqrt(dot(left, left) * dot(right, right))
     p, q, r = edges
     at_p, at_q, at_r = dot(normal, minus(p, a)), dot(normal, minus(q, a)), dot(normal, minus(r, a))
-    if min(at_p, at_q, at_r) > -needed or max(at_p, at_q, at_r) < needed:
-        return False
-    return (
+    if min(at_p, at_q, at_r) > needed or max(at_p, at_q, at_r) < -needed:
+        return APART
+    if (
         passes(p, at_p, q, at_q, needed, face, margin)
         or passes(q, at_q, r, at_r, needed, face, margin)
         or passes(r, at_r, p, at_p, needed, face, margin)
-    )
+    ):
+        return CROSSING
+    return UNSURE
+
+
+@kernel
+def parted(one: Triangle, other: Triangle, margin: float) -> bool:
+    """Whether a plane along an edge of each triangle has one on either side."""
+    for m in range(3):
+        edge = minus(one[1], one[0]) if m == 0 else (minus(one[2], one[1]) if m == 1 else minus(one[0], one[2]))
+        for n in range(3):
+            along = (
+                minus(other[1], other[0])
+                if n == 0
+                else (minus(other[2], other[1]) if n == 1 else minus(other[0], other[2]))
+            )
+            axis = cross(edge, along)
+            needed = margin * sqrt(dot(edge, edge) * dot(along, along))
+            a, b, c = dot(axis, one[0]), dot(axis, one[1]), dot(axis, one[2])
+            p, q, r = dot(axis, other[0]), dot(axis, other[1]), dot(axis, other[2])
+            if min(a, b, c) - max(p, q, r) > needed or min(p, q, r) - max(a, b, c) > needed:
+                return True
+    return False
 
 
 @kernel

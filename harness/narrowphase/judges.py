@@ -101,7 +101,7 @@ class HullJudge:
 
 
 class MeshJudge:
-    """Drops meshes whose hulls are proved separate, keeps those whose surfaces are proved to cross; FCL has the rest.
+    """Drops meshes whose hulls are proved separate, and settles the surfaces of the others; FCL has what is left.
 
     Attributes
     ----------
@@ -140,23 +140,22 @@ class MeshJudge:
         placement = self._places.at(positions, quaternions)
         verdicts, _, _ = self._hulls.settle(close, placement)
         may_touch = verdicts != SEPARATE
-        close = close[may_touch]
+        close, verdicts = close[may_touch], verdicts[may_touch]
         if self._hull_decides:
-            hit: Flags = verdicts[may_touch] == OVERLAP
-            if self._containment:
-                hit &= self._sizes[close[:, 0]] == self._sizes[close[:, 1]]
-            self._tests += len(verdicts)  # here the hull is the exact shape
-            asked = np.flatnonzero(~hit)
-            hit[asked] = self._surfaces.cross(close[asked], placement)
+            self._tests += len(may_touch)
+            same_size = self._sizes[close[:, 0]] == self._sizes[close[:, 1]]
+            asked = np.flatnonzero((verdicts == UNDECIDED) | ~same_size)
+            verdicts[asked] = self._surfaces.settle(close[asked], placement)
         else:
             self._tests += len(close)
-            hit = self._surfaces.cross(close, placement)
-        left = np.flatnonzero(~hit)
+            verdicts = self._surfaces.settle(close, placement)
+        hit: Flags = verdicts == OVERLAP
+        left = np.flatnonzero(verdicts == UNDECIDED)
         if len(left):
             hit[left] = self._fcl.verdicts(close[left], positions, quaternions)
-            if self._containment:
-                self.contained = self._containment.contained(close[~hit], placement)
-                self._contained += len(self.contained)
+        if self._containment:
+            self.contained = self._containment.contained(close[~hit], placement)
+            self._contained += len(self.contained)
         touching: Pairs = close[hit]
         return touching
 

@@ -13,6 +13,9 @@ import numpy as np
 from harness.kernel import kernel
 from harness.narrowphase.vectors import Vector, cross, dot, minus, plus, scaled
 
+# Of the product of the lengths: the most that rounding changes a triple product, and some more.
+ROUNDING = 2e-15
+
 Nearest = tuple[Vector, float, int]
 """The nearest point, its squared distance, and a bit for each corner that carries it (the first is 1)."""
 
@@ -97,10 +100,15 @@ def room_around_origin(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
 
 @kernel
 def depth_below(a: Vector, b: Vector, c: Vector, sign: float) -> float:
-    """Distance of the origin below the plane of a triangle, which is seen counter-clockwise if the sign is -1."""
-    normal = cross(minus(a, c), minus(b, c))
+    """Distance of the origin below the plane of a triangle, which is seen counter-clockwise if the sign is -1.
+
+    It is shortened by what rounding may have added: much, if the triangle is a needle.
+    """
+    left, right = minus(a, c), minus(b, c)
+    normal = cross(left, right)
     length = sqrt(dot(normal, normal))
-    return -sign * dot(normal, c) / length if length > 0.0 else -np.inf
+    rounding = ROUNDING * sqrt(dot(left, left) * dot(right, right) * dot(c, c))
+    return (-sign * dot(normal, c) - rounding) / length if length > 0.0 else -np.inf
 
 
 @kernel

@@ -121,7 +121,7 @@ def warm_up() -> None:
     close = Grid(bodies.radii, box).close_pairs(bodies.positions)
     placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
     HullPairs(hull, MARGIN).settle(close, placement)
-    MeshPairs(mesh).cross(close, placement)
+    MeshPairs(mesh).settle(close, placement)
     Containment(mesh).contained(np.array([[0, 1]]), placement)
     for shape in shapes:
         scene = Scene(shape, mesh, bodies, box)
