@@ -54,7 +54,8 @@ class Fcl:
         return {"sphere": 1e-15, "hull": 1e-11, "mesh": 1e-14}[shape]
 
     def load(self, scene: Scene) -> None:
-        self.counters = {"pair_tests": 0, "narrow_tests": 0}
+        self._tests = 0
+        self._broad: Grid | FclTree | None = None
         self._judge: Judge | None = None
         if self._algorithm == "brute-force":
             self._bodies = FclObjects(scene)
@@ -65,7 +66,7 @@ class Fcl:
             return
         sizes = scene.bodies.sizes
         if self._algorithm == "tree":
-            self._broad: Grid | FclTree = FclTree(scene)
+            self._broad = FclTree(scene)
         elif sizes.min(initial=1.0) == sizes.max(initial=1.0):
             self._broad = Grid(scene.bodies.radii, scene.box)
         else:
@@ -76,6 +77,14 @@ class Fcl:
             settled = self._algorithm == "grid" and self.hull_axis
             self._judge = SETTLED_BY[scene.shape](scene) if settled else FclJudge(scene)
             self._find = self._culled
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """What has been counted since the scene was loaded."""
+        if self._broad is None:
+            return {"pair_tests": self._tests, "narrow_tests": self._tests}
+        tests = self._broad.pair_tests
+        return {"pair_tests": tests, **(self._judge.counters if self._judge else {"narrow_tests": tests})}
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         return self._find(positions, quaternions)
@@ -88,9 +97,7 @@ class Fcl:
         result = fcl.CollisionResult()
         verdicts = map(fcl.collide, *(self._listed or self._both_sides()), repeat(self._request), repeat(result))
         touching = list(compress(combinations(range(count), 2), verdicts))
-        tests = count * (count - 1) // 2
-        self.counters["pair_tests"] += tests
-        self.counters["narrow_tests"] += tests
+        self._tests += count * (count - 1) // 2
         return np.array(touching, np.int64).reshape(-1, 2)
 
     def _both_sides(self) -> tuple[Iterable[fcl.CollisionObject], Iterable[fcl.CollisionObject]]:
@@ -100,16 +107,13 @@ class Fcl:
         return first, chain.from_iterable(objects[i:] for i in range(1, len(objects)))
 
     def _spheres(self, positions: Floats, quaternions: Floats) -> Pairs:
-        found = self._broad.close_pairs(positions)
-        self.counters["pair_tests"] = self.counters["narrow_tests"] = self._broad.pair_tests
-        return found
+        assert self._broad is not None
+        return self._broad.close_pairs(positions)
 
     def _culled(self, positions: Floats, quaternions: Floats) -> Pairs:
+        assert self._broad is not None
         assert self._judge is not None
-        close = self._broad.close_pairs(positions)
-        touching = self._judge.touching(close, positions, quaternions)
-        self.counters = {"pair_tests": self._broad.pair_tests, **self._judge.counters}
-        return touching
+        return self._judge.touching(self._broad.close_pairs(positions), positions, quaternions)
 
     @property
     def contained(self) -> Pairs:
