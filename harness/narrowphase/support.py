@@ -59,13 +59,15 @@ def support_map(vertices: Floats) -> SupportMap:
 
 @inner
 def support(hull: SupportMap, x: float, y: float, z: float) -> int:
-    """The vertex that reaches farthest along (x, y, z), which must be finite and not zero."""
+    """The vertex that reaches farthest along (x, y, z), which must be finite and not zero. Of others, any."""
     scale = 1.0 / (abs(x) + abs(y) + abs(z))
     u, v = x * scale, y * scale
     if z < 0.0:
         u, v = copysign(1.0 - abs(v), x), copysign(1.0 - abs(u), y)
     half, last = 0.5 * hull.side, hull.side - 1
-    cell = min(int((u + 1.0) * half), last) * hull.side + min(int((v + 1.0) * half), last)
+    u, v = (u + 1.0) * half, (v + 1.0) * half
+    u, v = u if u > 0.0 else 0.0, v if v > 0.0 else 0.0  # whatever is not a number must not become an index
+    cell = min(int(u), last) * hull.side + min(int(v), last)
     best, farthest = hull.candidates[hull.start[cell]], -np.inf
     for k in range(hull.start[cell], hull.start[cell + 1]):
         vertex = hull.candidates[k]

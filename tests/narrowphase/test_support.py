@@ -60,3 +60,8 @@ def test_a_query_compares_a_few_vertices_however_many_there_are():
         hull = support_map((cube_mesh() if name == "cube.ply" else mesh_named(name)).hull.vertices)
         assert np.diff(hull.start).max() <= most
         assert np.diff(hull.start).min() >= 1
+
+
+def test_a_direction_that_is_none_gets_some_vertex():
+    found = answers(cube_mesh().hull.vertices, [[0, 0, 0], [np.nan, 1, 0], [np.inf, 0, 1], [0, -np.inf, np.nan]])
+    assert ((found >= 0) & (found < 8)).all()
