@@ -15,9 +15,12 @@ from harness.broadphase.grid import Grid
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.narrowphase.fcl_objects import FclObjects
 from harness.narrowphase.fcl_tree import FclTree
+from harness.narrowphase.judges import FclJudge, HullJudge, Judge, MeshJudge
 from harness.scene.scene import Scene, Shape
 
 Algorithm = Literal["brute-force", "grid", "tree"]
+
+SETTLED_BY: dict[Shape, type[Judge]] = {"hull": HullJudge, "mesh": MeshJudge}
 
 # Up to so many bodies brute force keeps its pairs in lists (8 MB), which saves a tenth of its time.
 MOST_LISTED = 1000
@@ -30,11 +33,18 @@ class Fcl:
     ----------
     algorithm : {"brute-force", "grid", "tree"}
         `brute-force` puts every pair to FCL at every call. `grid` and `tree` first find the pairs whose bounding
-        spheres touch; for spheres that is the answer.
+        spheres touch; for spheres that is the answer. `tree` puts them to FCL, `grid` only those that it cannot settle
+        by the hulls and by a search for crossing triangles: hulls nearer to touching than rounding can tell, meshes
+        not proved to touch.
+
+    Attributes
+    ----------
+    hull_axis : set to False before loading, `grid` puts all close pairs to FCL as well; the answer is the same
     """
 
     name = "fcl"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    hull_axis = True
 
     def __init__(self, algorithm: Algorithm = "brute-force") -> None:
         self._algorithm = algorithm
@@ -45,8 +55,9 @@ class Fcl:
         return {"sphere": 1e-15, "hull": 1e-11, "mesh": 1e-14}[shape]
 
     def load(self, scene: Scene) -> None:
-        self._tests = {"pair_tests": 0, "narrow_tests": 0}
+        self._tests = 0
         self._broad: Grid | FclTree | None = None
+        self._judge: Judge | None = None
         if self._algorithm == "brute-force":
             self._bodies = FclObjects(scene)
             self._find: Callable[[Floats, Floats], Pairs] = self._brute_force
@@ -64,16 +75,28 @@ class Fcl:
         if scene.shape == "sphere":
             self._find = partial(self._spheres, self._broad)
         else:
-            self._bodies = FclObjects(scene)
-            self._find = partial(self._culled, self._broad)
+            settled = self._algorithm == "grid" and self.hull_axis
+            self._judge = SETTLED_BY[scene.shape](scene) if settled else FclJudge(scene)
+            self._find = partial(self._culled, self._broad, self._judge)
 
     @property
     def counters(self) -> dict[str, float]:
         """Tests so far, and with the grid how many of its cells a body's bounding cube overlapped in the last call."""
+        if self._broad is None:
+            return {"pair_tests": self._tests, "narrow_tests": self._tests}
+        tests = self._broad.pair_tests
+        counted: dict[str, float] = {"pair_tests": tests}
+        counted |= self._judge.counters if self._judge else {"narrow_tests": tests}
         if isinstance(self._broad, Grid):
-            most, mean = self._broad.cells_per_body()
-            return {**self._tests, "cells_per_body_most": most, "cells_per_body": mean}
-        return dict(self._tests)
+            counted["cells_per_body_most"], counted["cells_per_body"] = self._broad.cells_per_body()
+        return counted
+
+    @property
+    def contained(self) -> Pairs:
+        """(k, 2) int array: pairs of the last frame of which one mesh is wholly inside the other, where `grid` looks
+        for them. Their surfaces do not touch, so that they are no hits."""
+        found: Pairs = getattr(self._judge, "contained", np.empty((0, 2), np.int64))
+        return found
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         return self._find(positions, quaternions)
@@ -86,9 +109,7 @@ class Fcl:
         result = fcl.CollisionResult()
         verdicts = map(fcl.collide, *(self._listed or self._both_sides()), repeat(self._request), repeat(result))
         touching = list(compress(combinations(range(count), 2), verdicts))
-        tests = count * (count - 1) // 2
-        self._tests["pair_tests"] += tests
-        self._tests["narrow_tests"] += tests
+        self._tests += count * (count - 1) // 2
         return np.array(touching, np.int64).reshape(-1, 2)
 
     def _both_sides(self) -> tuple[Iterable[fcl.CollisionObject], Iterable[fcl.CollisionObject]]:
@@ -98,17 +119,7 @@ class Fcl:
         return first, chain.from_iterable(objects[i:] for i in range(1, len(objects)))
 
     def _spheres(self, broad: Grid | FclTree, positions: Floats, quaternions: Floats) -> Pairs:
-        found = broad.close_pairs(positions)
-        self._tests["pair_tests"] = self._tests["narrow_tests"] = broad.pair_tests
-        return found
+        return broad.close_pairs(positions)
 
-    def _culled(self, broad: Grid | FclTree, positions: Floats, quaternions: Floats) -> Pairs:
-        close = broad.close_pairs(positions)
-        self._tests["pair_tests"] = broad.pair_tests
-        self._tests["narrow_tests"] += len(close)
-        if not len(close):
-            return close
-        self._bodies.place(positions, quaternions, np.unique(close))
-        objects, result = self._bodies.objects, fcl.CollisionResult()
-        touching = [bool(fcl.collide(objects[i], objects[j], self._request, result)) for i, j in close.tolist()]
-        return close[touching]
+    def _culled(self, broad: Grid | FclTree, judge: Judge, positions: Floats, quaternions: Floats) -> Pairs:
+        return judge.touching(broad.close_pairs(positions), positions, quaternions)

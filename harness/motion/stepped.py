@@ -18,6 +18,7 @@ from harness.motion.kinematics import Flight
 from harness.motion.observer import Folds, Observer, Onsets
 from harness.motion.plan import Plan
 from harness.motion.response import Answers, Response
+from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
 
@@ -105,11 +106,10 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:
             return touching
 
         return spheres
-    # a copy, since numba compiles anew for an array that cannot be written to, as those of a mesh may be
-    vertices, cull = scene.mesh.hull.vertices.copy(), plan.keeps("wall_cull")
+    hull, cull = support_map(scene.mesh.hull.vertices), plan.keeps("wall_cull")
 
     def hulls(flight: Flight) -> Flags:
-        hulls_at_walls(flight.positions, flight.quaternions, sizes, vertices, half, cull, touching)
+        hulls_at_walls(flight.positions, flight.quaternions, sizes, hull, half, cull, touching)
         return touching
 
     return hulls

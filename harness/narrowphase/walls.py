@@ -6,10 +6,10 @@ reaches exactly as far as its hull. A body that touches a plane or is beyond it 
 
 from __future__ import annotations
 
-import numpy as np
-
 from harness.arrays import Flags, Floats
 from harness.kernel import kernel
+from harness.narrowphase.support import SupportMap, support
+from harness.narrowphase.vectors import dot, rotation, scaled
 
 
 @kernel
@@ -36,7 +36,7 @@ def hulls_at_walls(
     positions: Floats,
     quaternions: Floats,
     sizes: Floats,
-    vertices: Floats,
+    hull: SupportMap,
     half: Floats,
     cull: bool,
     touching: Flags,
@@ -49,11 +49,11 @@ def hulls_at_walls(
     quaternions : (n, 4) float array, w x y z
     sizes : (n,) float array, m
         Diameters of the bounding spheres; the hull itself has diameter 1.
-    vertices : (h, 3) float array
-        Vertices of the hull, centred on its bounding sphere.
+    hull : SupportMap
+        Of a hull centred on its bounding sphere.
     half : (3,) float array, m
     cull : bool
-        Skip the hull of a body whose bounding sphere reaches no wall. The answer is the same.
+        Put a hull only to the walls that its bounding sphere reaches. The answer is the same.
     touching : (n, 6) bool array
         Overwritten, in the order x-, x+, y-, y+, z-, z+.
 
@@ -64,29 +64,20 @@ def hulls_at_walls(
     """
     looked_at = 0
     for i in range(len(positions)):
-        touching[i] = False
-        if cull:
-            radius = 0.5 * sizes[i]
-            within = True
-            for axis in range(3):
-                within = within and abs(positions[i, axis]) + radius < half[axis]
-            if within:
+        radius, turned = 0.5 * sizes[i], False
+        matrix = rotation(1.0, 0.0, 0.0, 0.0)
+        for wall in range(6):
+            axis, sign = wall // 2, 2.0 * (wall % 2) - 1.0
+            touching[i, wall] = False
+            if cull and sign * positions[i, axis] + radius < half[axis]:
                 continue
-        looked_at += 1
-        w, x, y, z = quaternions[i]
-        rotation = (
-            (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
-            (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
-            (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
-        )
-        for axis in range(3):
-            a, b, c = rotation[axis]
-            low = np.inf
-            high = -np.inf
-            for k in range(len(vertices)):
-                reach = a * vertices[k, 0] + b * vertices[k, 1] + c * vertices[k, 2]
-                low = min(low, reach)
-                high = max(high, reach)
-            touching[i, 2 * axis] = positions[i, axis] + sizes[i] * low <= -half[axis]
-            touching[i, 2 * axis + 1] = positions[i, axis] + sizes[i] * high >= half[axis]
+            if not turned:
+                turned = True
+                looked_at += 1
+                matrix = rotation(quaternions[i, 0], quaternions[i, 1], quaternions[i, 2], quaternions[i, 3])
+            row = matrix[0] if axis == 0 else (matrix[1] if axis == 1 else matrix[2])
+            towards = scaled(row, sign)
+            vertex = support(hull, towards[0], towards[1], towards[2])
+            reach = dot(towards, (hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]))
+            touching[i, wall] = sign * positions[i, axis] + sizes[i] * reach >= half[axis]
     return looked_at

@@ -23,6 +23,11 @@ from harness.motion.predicted import fly_predicted
 from harness.motion.predictive import simulation
 from harness.motion.response import Response
 from harness.motion.stepped import fly_stepped
+from harness.narrowphase.containment import Containment
+from harness.narrowphase.gjk import MARGIN
+from harness.narrowphase.hull_pairs import HullPairs
+from harness.narrowphase.mesh_pairs import MeshPairs
+from harness.narrowphase.placement import Places
 from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
 from harness.scene.bodies import Bodies
@@ -122,8 +127,12 @@ def warm_up() -> None:
     simulation.warm_up()
     place(bodies.radii, box, np.random.default_rng(0), overlap=False)
     grid = Grid(bodies.radii, box)
-    grid.close_pairs(bodies.positions)
+    close = grid.close_pairs(bodies.positions)
     grid.cells_per_body()
+    placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
+    HullPairs(hull, MARGIN).settle(close, placement)
+    MeshPairs(mesh).settle(close, placement)
+    Containment(mesh).contained(np.array([[0, 1]]), placement)
     for shape in shapes:
         scene = Scene(shape, mesh, bodies, box)
         for response in responses:

@@ -1,0 +1,205 @@
+"""Distance of two convex hulls, and whether they touch: the algorithm of Gilbert, Johnson and Keerthi (1988).
+
+It walks through the Minkowski difference a - b of the hulls towards the origin. Every step yields a point of the
+difference, so an upper bound on the distance, and a plane that bounds it from below; what is returned is certified by
+one of the two, whatever rounding did on the way. Lengths are in any one unit; all vectors are in the frame of hull a.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from harness.kernel import inner, kernel
+from harness.narrowphase.simplex import (
+    nearest_on_segment,
+    nearest_on_tetrahedron,
+    nearest_on_triangle,
+    room_around_origin,
+    weights,
+)
+from harness.narrowphase.support import SupportMap, support
+from harness.narrowphase.vectors import Matrix, Vector, dot, minus, plus, scaled, turned, turned_back, turned_by_both
+
+SEPARATE, OVERLAP, UNDECIDED = 0, 1, 2
+
+# Of the sum of the sizes: the gap or the overlap that a certificate must show. Turning and placing two vertices of
+# close bodies rounds by less than a tenth of it.
+MARGIN = 1e-13
+
+# Relative distance between the two bounds at which the walk ends; it mostly ends earlier, at a vertex seen before.
+PRECISION = 1e-14
+MOST_STEPS = 100
+
+Seeds = tuple[int, int, int, int]
+"""Corners of the last simplex, each vertex a << 32 | vertex b, and -1 where there is none."""
+
+NO_SEEDS: Seeds = (-1, -1, -1, -1)
+
+
+class Relative(NamedTuple):
+    """Hull b as seen from hull a.
+
+    Attributes
+    ----------
+    rotation : of b's axes
+    offset : from a's centre to b's
+    size_a, size_b : factors on the hull's vertices
+    """
+
+    rotation: Matrix
+    offset: Vector
+    size_a: float
+    size_b: float
+
+
+class Distance(NamedTuple):
+    """What is known of two hulls.
+
+    Attributes
+    ----------
+    verdict : SEPARATE or OVERLAP if certified, else UNDECIDED: closer to touching than rounding can tell
+    lower, upper : bounds on the distance; 0 where they overlap
+    axis : along which they are at least `lower` apart, pointing from b to a; of no certain length
+    point_a, point_b : points of the hulls that are `upper` apart; of no meaning where they overlap
+    seeds : where to start next time
+    """
+
+    verdict: int
+    lower: float
+    upper: float
+    axis: Vector
+    point_a: Vector
+    point_b: Vector
+    seeds: Seeds
+
+
+@kernel
+def relative_pose(rotation_a: Matrix, size_a: float, rotation_b: Matrix, size_b: float, offset: Vector) -> Relative:
+    """Hull b as seen from hull a; the rotations and the offset from a's centre to b's are those in the world."""
+    return Relative(turned_by_both(rotation_a, rotation_b), turned_back(rotation_a, offset), size_a, size_b)
+
+
+@kernel
+def hull_distance(
+    hull_a: SupportMap, hull_b: SupportMap, pose: Relative, seeds: Seeds, axis: Vector, margin: float, enough: float
+) -> Distance:
+    """Distance of two hulls.
+
+    Parameters
+    ----------
+    hull_a, hull_b : SupportMap
+    pose : Relative
+    seeds : those of an earlier answer for this pair, or NO_SEEDS. They only save time.
+    axis : without seeds, the first guess at the direction from b to a; not zero unless the centres coincide
+    margin : gap or overlap that a certificate must show, at least MARGIN x (size_a + size_b)
+    enough : a gap that need not be known better; `margin` to know only whether they touch
+
+    Returns
+    -------
+    Distance
+        With `upper` - `lower` within rounding of 1e-14 of the distance, unless `lower` is above `enough`.
+    """
+    p0 = p1 = p2 = p3 = (0.0, 0.0, 0.0)
+    s0, s1, s2, s3 = seeds
+    count = 0
+    if s0 < 0:
+        if not (axis[0] != 0.0 or axis[1] != 0.0 or axis[2] != 0.0):
+            axis = (1.0, 0.0, 0.0)
+        s0 = farthest(hull_a, hull_b, pose, scaled(axis, -1.0))
+    p0 = difference(hull_a, hull_b, pose, s0)
+    nearest, squared, corners = p0, dot(p0, p0), 1
+    if s1 >= 0:
+        p1 = difference(hull_a, hull_b, pose, s1)
+        nearest, squared, corners = nearest_on_segment(p0, p1)
+    if s2 >= 0:
+        p2 = difference(hull_a, hull_b, pose, s2)
+        nearest, squared, corners = nearest_on_triangle(p0, p1, p2)
+    if s3 >= 0:
+        p3 = difference(hull_a, hull_b, pose, s3)
+        if room_around_origin(p0, p1, p2, p3) > margin:
+            return Distance(OVERLAP, 0.0, 0.0, nearest, p0, p0, (s0, s1, s2, s3))
+        other = nearest_on_tetrahedron(p0, p1, p2, p3)
+        if other[2] != 15 and other[1] < squared:
+            nearest, squared, corners = other
+
+    lower, best = 0.0, nearest
+    for _ in range(MOST_STEPS):
+        # drop the corners that do not carry the nearest point, from the last on
+        count = 4
+        if not corners & 8:
+            s3, count = -1, 3
+        if not corners & 4:
+            p2, s2, p3, s3 = p3, s3, p3, -1
+            count -= 1
+        if not corners & 2:
+            p1, s1, p2, s2, s3 = p2, s2, p3, s3, -1
+            count -= 1
+        if not corners & 1:
+            p0, s0, p1, s1, p2, s2, s3 = p1, s1, p2, s2, p3, s3, -1
+            count -= 1
+        if squared <= margin * margin:
+            break
+        vertex = farthest(hull_a, hull_b, pose, scaled(nearest, -1.0))
+        point = difference(hull_a, hull_b, pose, vertex)
+        along = dot(nearest, point)
+        if along > 0.0 and along > lower * sqrt(squared):
+            lower, best = along / sqrt(squared), nearest
+            if lower > enough:
+                break
+        if squared - along <= PRECISION * squared or vertex in (s0, s1, s2):
+            break
+        if count == 1:
+            p1, s1 = point, vertex
+            step = nearest_on_segment(p0, p1)
+        elif count == 2:
+            p2, s2 = point, vertex
+            step = nearest_on_triangle(p0, p1, p2)
+        else:
+            p3, s3 = point, vertex
+            step = nearest_on_tetrahedron(p0, p1, p2, p3)
+            if step[2] == 15:
+                inside = room_around_origin(p0, p1, p2, p3) > margin
+                verdict = OVERLAP if inside else UNDECIDED
+                return Distance(verdict, 0.0, 0.0, nearest, p0, p0, (s0, s1, s2, s3))
+        if not step[1] < squared:  # rounding ends the descent
+            s1, s2, s3 = (-1, s2, s3) if count == 1 else (s1, -1 if count == 2 else s2, -1)
+            break
+        nearest, squared, corners = step
+    verdict = SEPARATE if lower > margin else UNDECIDED
+    shares = weights(p0, p1, p2, count)
+    point_a = point_b = (0.0, 0.0, 0.0)
+    for corner in range(count):
+        seed, share = (s0, shares[0]) if corner == 0 else ((s1, shares[1]) if corner == 1 else (s2, shares[2]))
+        point_a = plus(point_a, scaled(vertex_a(hull_a, pose, seed >> 32), share))
+        point_b = plus(point_b, scaled(vertex_b(hull_b, pose, seed & 0xFFFFFFFF), share))
+    return Distance(verdict, lower, max(lower, sqrt(squared)), best, point_a, point_b, (s0, s1, s2, s3))
+
+
+@inner
+def farthest(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, along: Vector) -> int:
+    """The vertices, a << 32 | b, whose difference a - b reaches farthest along a direction that is not zero."""
+    back = turned_back(pose.rotation, along)
+    a = support(hull_a, along[0], along[1], along[2])
+    b = support(hull_b, -back[0], -back[1], -back[2])
+    return int(np.int64(a) << 32 | np.int64(b))
+
+
+@inner
+def difference(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, seed: int) -> Vector:
+    """The point a - b of the Minkowski difference."""
+    return minus(vertex_a(hull_a, pose, seed >> 32), vertex_b(hull_b, pose, seed & 0xFFFFFFFF))
+
+
+@inner
+def vertex_a(hull: SupportMap, pose: Relative, vertex: int) -> Vector:
+    place = hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]
+    return scaled(place, pose.size_a)
+
+
+@inner
+def vertex_b(hull: SupportMap, pose: Relative, vertex: int) -> Vector:
+    place = hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]
+    return plus(pose.offset, scaled(turned(pose.rotation, place), pose.size_b))

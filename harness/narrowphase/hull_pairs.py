@@ -1,0 +1,152 @@
+"""All close pairs of a frame, hull against hull, in one kernel: separated, overlapping, or too near to touching to say.
+
+Each pair starts from what settled it in the last frame: the axis that proved it separated, or the simplex that proved
+it overlapping. Both are only guesses at where to look. Every verdict is proved anew from the poses at hand, so that
+what is remembered changes the time and never the answer.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.arrays import Floats, Ints, Pairs
+from harness.kernel import kernel
+from harness.narrowphase.gjk import NO_SEEDS, OVERLAP, SEPARATE, UNDECIDED, hull_distance
+from harness.narrowphase.placement import Placement, offset_of, pose_of, rotation_of
+from harness.narrowphase.separating_axis import gap_along
+from harness.narrowphase.support import SupportMap, support_map
+from harness.narrowphase.vectors import scaled, turned
+from harness.scene.hull import Hull
+
+Verdicts = NDArray[np.int8]
+
+
+class Memory(NamedTuple):
+    """What settled the pairs of a frame.
+
+    Attributes
+    ----------
+    keys : (k,) int array, i << 32 | j, ascending
+    axes : (k, 3) float array, in the world, from j to i; of no meaning for overlapping pairs
+    seeds : (k, 4) int array, the simplex of overlapping pairs, else -1
+    """
+
+    keys: Ints
+    axes: Floats
+    seeds: Ints
+
+
+class HullPairs:
+    """Verdicts on pairs of bodies that have the same hull, in any sizes.
+
+    Parameters
+    ----------
+    hull : Hull of diameter 1
+    margin : gap or overlap that a certificate must show, of the sum of the sizes
+
+    Attributes
+    ----------
+    searches : pairs so far that the axis of the last frame did not settle
+    """
+
+    def __init__(self, hull: Hull, margin: float) -> None:
+        self.searches = 0
+        self._margin = margin
+        self._hull = support_map(hull.vertices)
+        self._last, self._now, self._remembered = memory(64), memory(64), 0
+        self._verdicts: Verdicts = np.empty(64, np.int8)
+
+    def settle(self, pairs: Pairs, placement: Placement) -> tuple[Verdicts, int, int]:
+        """Verdicts on the pairs of a frame.
+
+        Parameters
+        ----------
+        pairs : (k, 2) int array, sorted; bodies whose bounding spheres touch
+        placement : Placement
+
+        Returns
+        -------
+        verdicts : (k,) int8 array of SEPARATE, OVERLAP and UNDECIDED, overwritten by the next call
+        overlapping, undecided : how many pairs are
+
+        Raises
+        ------
+        ValueError
+            For the orientation of a body of a pair that is not a unit quaternion.
+        """
+        count = len(pairs)
+        if count > len(self._verdicts):
+            room = count + count // 2
+            self._verdicts, self._now = np.empty(room, np.int8), memory(room)
+        elif len(self._now.keys) < count:
+            self._now = memory(len(self._verdicts))
+        overlapping, undecided, searches = settle(
+            pairs, placement, self._margin, self._hull, self._last, self._remembered, self._now, self._verdicts
+        )
+        self._last, self._now, self._remembered = self._now, self._last, count
+        self.searches += searches
+        return self._verdicts[:count], overlapping, undecided
+
+
+def memory(room: int) -> Memory:
+    """Unwritten."""
+    return Memory(np.empty(room, np.int64), np.empty((room, 3)), np.empty((room, 4), np.int64))
+
+
+@kernel
+def settle(
+    pairs: Pairs,
+    placement: Placement,
+    margin: float,
+    hull: SupportMap,
+    last: Memory,
+    remembered: int,
+    now: Memory,
+    verdicts: Verdicts,
+) -> tuple[int, int, int]:
+    """Settle each pair, starting from its memory if it has one, and remember how.
+
+    Parameters
+    ----------
+    pairs, placement, margin : as `HullPairs` has them
+    last : the Memory of `remembered` pairs
+    now : written: the Memory of these pairs
+    verdicts : (k,) written
+
+    Returns
+    -------
+    How many pairs overlap, are undecided, and had to be searched.
+    """
+    overlapping, undecided, searches = 0, 0, 0
+    place = 0
+    for k in range(len(pairs)):
+        i, j = pairs[k, 0], pairs[k, 1]
+        key = i << 32 | j
+        while place < remembered and last.keys[place] < key:
+            place += 1
+        offset = offset_of(placement, i, j)
+        seeds, axis = NO_SEEDS, scaled(offset, -1.0)
+        if place < remembered and last.keys[place] == key:
+            seeds = last.seeds[place, 0], last.seeds[place, 1], last.seeds[place, 2], last.seeds[place, 3]
+            if seeds[0] < 0:
+                axis = last.axes[place, 0], last.axes[place, 1], last.axes[place, 2]
+        rotation_i, rotation_j = rotation_of(placement, i), rotation_of(placement, j)
+        size_i, size_j = placement.sizes[i], placement.sizes[j]
+        needed = margin * (size_i + size_j)
+        verdict = UNDECIDED
+        if seeds[0] < 0 and gap_along(hull, axis, rotation_i, size_i, rotation_j, size_j, offset) > needed:
+            verdict = SEPARATE
+        else:
+            searches += 1
+            found = hull_distance(hull, hull, pose_of(placement, i, j), seeds, scaled(axis, 1.0), needed, needed)
+            verdict, axis = found.verdict, turned(rotation_i, found.axis)
+            seeds = found.seeds if verdict == OVERLAP else NO_SEEDS
+        now.keys[k], verdicts[k] = key, verdict
+        now.axes[k, 0], now.axes[k, 1], now.axes[k, 2] = axis
+        now.seeds[k, 0], now.seeds[k, 1], now.seeds[k, 2], now.seeds[k, 3] = seeds
+        overlapping += verdict == OVERLAP
+        undecided += verdict == UNDECIDED
+    return overlapping, undecided, searches
