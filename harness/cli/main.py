@@ -13,6 +13,7 @@ from harness.errors import InputError
 COMMANDS = {
     "sweep": "run experiments and keep every measurement",
     "report": "turn the measurements into pages",
+    "compare": "hold backends against each other and against exact arithmetic",
     "trace": "print the hits of one run",
     "plan": "print what each run does, what it leaves out, and why",
     "validate": "check experiment files and say every error",

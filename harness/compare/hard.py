@@ -9,6 +9,8 @@ that much at the most.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -18,8 +20,7 @@ from harness.arrays import Floats
 from harness.compare.poses import Pose, PoseSet
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
-from harness.scene.hull import Hull
-from harness.scene.mesh import Mesh
+from harness.scene.mesh import Mesh, Surface
 from harness.scene.scene import Scene, Shape
 
 GAPS = (0.0, *(sign * 10.0**power for power in range(-15, -1) for sign in (1, -1)))
@@ -41,7 +42,7 @@ _SEED = 259
 
 
 class _Contact(NamedTuple):
-    """A point of a hull of size 1 and an outward direction in which no other point of it lies farther."""
+    """A point of a body, m in its own frame, and an outward direction in which no other point of it lies farther."""
 
     point: Floats
     outward: Floats
@@ -55,24 +56,29 @@ def hard_poses(shape: Shape, mesh: Mesh | None) -> Iterator[PoseSet]:
     shape : what the narrow phase is to see
     mesh : None for spheres
     """
-    rng = np.random.default_rng(_SEED)
     for size, other, away in _SETTINGS:
-        poses = [*_first_contacts(shape, mesh, (size, other), away, rng), *_overlaps((size, other), away, rng)]
-        yield PoseSet(_two(shape, mesh, (size, other), poses[0]), tuple(poses))
+        yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away))
 
 
-def _first_contacts(
-    shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], away: float, rng: np.random.Generator
-) -> Iterator[Pose]:
-    names = ("surface",) if shape == "sphere" or mesh is None else _FEATURES
+def _poses(scene: Scene, away: float) -> tuple[Pose, ...]:
+    rng = np.random.default_rng(_SEED)
+    first, second = scene.bodies.sizes.tolist()
+    return (*_first_contacts(scene, away, rng), *_overlaps((first, second), away, rng))
+
+
+def _first_contacts(scene: Scene, away: float, rng: np.random.Generator) -> Iterator[Pose]:
+    sizes = scene.bodies.sizes.tolist()
+    solids = [_solid(scene, size) for size in sizes]
+    names = ("surface",) if solids[0] is None else _FEATURES
     for (first, second), gap in product(product(names, names), GAPS):
-        contacts = [_contact(mesh, name, rng) for name in (first, second)]
+        contact, other = (
+            _contact(solid, size, name, rng) for solid, size, name in zip(solids, sizes, (first, second), strict=True)
+        )
         turned = _random_turn(rng)
-        normal = _rotated(turned, contacts[0].outward)
-        against = _turn_onto(contacts[1].outward, -normal, rng.uniform(0, 2 * np.pi))
+        normal = _rotated(turned, contact.outward)
+        against = _turn_onto(other.outward, -normal, rng.uniform(0, 2 * np.pi))
         centre = away * _direction(rng)
-        place = centre + _rotated(turned, contacts[0].point) * sizes[0]
-        place = place + gap * min(sizes) * normal - _rotated(against, contacts[1].point) * sizes[1]
+        place = centre + _rotated(turned, contact.point) + gap * min(sizes) * normal - _rotated(against, other.point)
         yield Pose(f"{first} to {second}, gap {gap:g}", np.array([centre, place]), np.array([turned, against]))
 
 
@@ -85,43 +91,45 @@ def _overlaps(sizes: tuple[float, float], away: float, rng: np.random.Generator)
         yield Pose(f"centres {share:g} of the reach apart", np.array([centre, place]), turns)
 
 
-def _two(shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], pose: Pose) -> Scene:
+def _two(shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], away: float) -> Scene:
     bodies = Bodies(
-        positions=pose.positions,
+        positions=np.zeros((2, 3)),
         velocities=np.zeros((2, 3)),
-        quaternions=pose.quaternions,
+        quaternions=np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)),
         spins=np.zeros((2, 3)),
         sizes=np.array(sizes),
         masses=np.array(sizes) ** 3,
     )
-    half = float(np.abs(pose.positions).max()) + 4 * sum(sizes)
-    return Scene(shape, mesh, bodies, Box(np.full(3, half)))
+    return Scene(shape, mesh, bodies, Box(np.full(3, away + 4 * sum(sizes))))
 
 
-def _contact(mesh: Mesh | None, feature: str, rng: np.random.Generator) -> _Contact:
-    if mesh is None or feature == "surface":
+def _solid(scene: Scene, size: float) -> Surface | None:
+    """The hull of a body of this size, m; of a mesh too, since its hull is met first. None for a sphere."""
+    return None if scene.shape == "sphere" else replace(scene, shape="hull").solid_of(size)
+
+
+def _contact(solid: Surface | None, size: float, feature: str, rng: np.random.Generator) -> _Contact:
+    if solid is None:
         outward = _direction(rng)
-        return _Contact(outward / 2, outward)
-    hull = mesh.hull
+        return _Contact(outward * (size / 2), outward)
     if feature == "vertex":
         outward = _direction(rng)
-        return _Contact(hull.vertices[(hull.vertices @ outward).argmax()], outward)
-    face = int(rng.integers(len(hull.faces)))
-    corners = hull.faces[face]
+        return _Contact(solid.vertices[(solid.vertices @ outward).argmax()], outward)
+    face = int(rng.integers(len(solid.faces)))
+    corners = solid.faces[face]
     if feature == "face":
-        return _Contact(rng.dirichlet(np.ones(3)) @ hull.vertices[corners], _normal(hull, face))
+        return _Contact(rng.dirichlet(np.ones(3)) @ solid.vertices[corners], _normal(solid, face))
     start, end = int(corners[0]), int(corners[1])
-    across = next(
-        other for other, their in enumerate(hull.faces.tolist()) if other != face and start in their and end in their
-    )
+    both = (solid.faces == start).any(axis=1) & (solid.faces == end).any(axis=1)
+    neighbours = np.flatnonzero(both)
     share = rng.uniform(0.1, 0.9)
-    point = share * hull.vertices[start] + (1 - share) * hull.vertices[end]
-    between = _normal(hull, face) + _normal(hull, across)
+    point = share * solid.vertices[start] + (1 - share) * solid.vertices[end]
+    between = _normal(solid, int(neighbours[0])) + _normal(solid, int(neighbours[-1]))
     return _Contact(point, between / np.linalg.norm(between))
 
 
-def _normal(hull: Hull, face: int) -> Floats:
-    a, b, c = hull.vertices[hull.faces[face]]
+def _normal(solid: Surface, face: int) -> Floats:
+    a, b, c = solid.vertices[solid.faces[face]]
     normal = np.cross(b - a, c - a)
     return np.asarray(normal / np.linalg.norm(normal), np.float64)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from harness.arrays import Floats
@@ -28,10 +28,17 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class PoseSet:
-    """A scene and the poses at which it is looked at, in the order in which every backend is asked."""
+    """A scene and the poses at which it is looked at.
+
+    Parameters
+    ----------
+    scene : Scene
+    poses : what makes the poses, in the order in which every backend is asked, from the scene with the hulls that are
+        really compared: contacts are exact only of those
+    """
 
     scene: Scene
-    poses: tuple[Pose, ...]
+    poses: Callable[[Scene], Sequence[Pose]]
 
 
 def flown(scene: Scene, frames: int, dt: float) -> PoseSet:
@@ -39,7 +46,7 @@ def flown(scene: Scene, frames: int, dt: float) -> PoseSet:
 
     With a response no body would ever be seen to overlap another.
     """
-    return PoseSet(scene, tuple(_frames(scene, frames, dt)))
+    return PoseSet(scene, lambda held: tuple(_frames(held, frames, dt)))
 
 
 def _frames(scene: Scene, frames: int, dt: float) -> Iterator[Pose]:
