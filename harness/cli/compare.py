@@ -33,6 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"two or more; those that the experiment names where it names several, else {','.join(DEFAULT)}",
     )
     add_override_argument(parser)
+    parser.add_argument(
+        "--save", metavar="DIR", help="write real disagreements as the smallest experiments that show them"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
 
 
@@ -54,8 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
         names = chosen or _named(experiment)
         print(f"{experiment.name}: {', '.join(names)}", file=sys.stderr)
         whole.add(compare(_settings(experiment, meshes), names, progress))
+    files = _saved(whole, meshes, arguments.save) if arguments.save else {}
     if arguments.json:
-        json.dump(_document(whole), sys.stdout, allow_nan=False)
+        json.dump(_document(whole, files), sys.stdout, allow_nan=False)
         print()
         for line in whole.unsupported:
             print(line, file=sys.stderr)
@@ -114,15 +118,47 @@ def _settings(experiment: Experiment, meshes: dict[Path, Mesh]) -> Iterator[Pose
         yield from hard_poses(shape, mesh_of(experiment, point, meshes))
 
 
-def _document(found: Comparison) -> dict[str, Any]:
+# Minimising a case asks the backends some ten times; more cases of one backend show the same defect again.
+MOST_SAVED = 5
+
+
+def _saved(found: Comparison, meshes: dict[Path, Mesh], folder: str) -> dict[int, str]:
+    """The files of the first cases that every backend has lost, by the place of the case."""
+    import sys
+    from pathlib import Path
+
+    from harness.compare.minimise import minimise
+    from harness.compare.reproduction import save
+
+    files: dict[int, str] = {}
+    tried: dict[str, int] = {}
+    for place, case in enumerate(found.cases):
+        tried[case.wrong] = tried.get(case.wrong, 0) + 1
+        if tried[case.wrong] > MOST_SAVED:
+            continue
+        small = minimise(case)
+        if small is None:
+            print(
+                f"{case.wrong}, {case.pose.name}, call {case.call}: it depends on what was asked before",
+                file=sys.stderr,
+            )
+            continue
+        mesh = next((path for path, opened in meshes.items() if opened is case.scene.mesh), None)
+        files[place] = str(save(small, Path(folder), place, mesh))
+    return files
+
+
+def _document(found: Comparison, files: dict[int, str]) -> dict[str, Any]:
     from dataclasses import asdict
 
     pairs = [{**asdict(tally), "backends": list(tally.backends)} for tally in found.tallies]
-    cases = [_case(case) for case in found.cases] + [_failure(failure) for failure in found.failures]
+    cases = [_case(case, files.get(place)) for place, case in enumerate(found.cases)] + [
+        _failure(failure) for failure in found.failures
+    ]
     return {"pairs": pairs, "cases": cases}
 
 
-def _case(case: Case) -> dict[str, Any]:
+def _case(case: Case, file: str | None) -> dict[str, Any]:
     where = {"pose": case.pose.name, "call": case.call, "touching": case.judgement.touching}
     return {
         "backends": list(case.backends),
@@ -130,7 +166,7 @@ def _case(case: Case) -> dict[str, Any]:
         "bodies": list(case.bodies),
         "gap": case.judgement.gap,
         "certificate": case.judgement.certificate | where,
-        "file": None,
+        "file": file,
     }
 
 
