@@ -19,9 +19,10 @@ KNOWS = {
     "measure": {"experiment", "scene"},
     "motion": GEOMETRY | {"measure"},
     "store": set(),
+    "compare": GEOMETRY | {"motion"},
     "runner": GEOMETRY | {"experiment", "measure", "motion", "store"},
     "report": {"store", "measure"},
-    "cli": GEOMETRY | {"experiment", "measure", "motion", "store", "runner", "report"},
+    "cli": GEOMETRY | {"experiment", "measure", "motion", "store", "compare", "runner", "report"},
 }
 
 

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 from harness.arrays import Floats, Pairs
+from harness.scene.hull import Hull
 from harness.scene.scene import Scene, Shape
 
 
@@ -54,3 +55,17 @@ def approximations(backend: Backend) -> Mapping[Shape, str]:
     """The shapes that the backend replaces by another, and how; empty for an exact backend."""
     replaced: Mapping[Shape, str] = getattr(backend, "approximations", {})
     return replaced
+
+
+def own_hulls(backend: Backend) -> Mapping[float, Hull]:
+    """The hulls that a loaded backend holds in place of the scene's, by the size of a body, both m; else empty.
+
+    A comparison gives them to the other backend too, so that both are asked about the same solids.
+    """
+    held: Mapping[float, Hull] = getattr(backend, "own_hulls", {})
+    return held
+
+
+def own_hulls_tolerance(backend: Backend) -> float:
+    """The tolerance for hulls when the backend's own are what it is held against; 0 where it has none."""
+    return float(getattr(backend, "own_hulls_tolerance", 0.0))

@@ -11,8 +11,7 @@ import numpy as np
 
 from harness.arrays import Floats, Ints
 from harness.narrowphase.units import unit_of
-from harness.scene.hull import Hull
-from harness.scene.mesh import Mesh
+from harness.scene.mesh import Triangles
 from harness.scene.scene import Scene
 
 
@@ -36,10 +35,10 @@ class FclObjects:
         self._turning = scene.shape != "sphere"
         sizes = (scene.bodies.sizes / self.unit).tolist()
         if shared:
-            by_size = {size: _geometry(scene, size) for size in dict.fromkeys(sizes)}
+            by_size = {size: _geometry(scene, size, self.unit) for size in dict.fromkeys(sizes)}
             self.geometries = [by_size[size] for size in sizes]
         else:
-            self.geometries = [_geometry(scene, size) for size in sizes]
+            self.geometries = [_geometry(scene, size, self.unit) for size in sizes]
         self.objects = [fcl.CollisionObject(geometry) for geometry in self.geometries]
 
     def place(self, positions: Floats, quaternions: Floats, bodies: Ints | None = None) -> None:
@@ -76,21 +75,24 @@ class FclObjects:
         self.objects[body].setTranslation(position / self.unit)
 
 
-def _geometry(scene: Scene, size: float) -> fcl.CollisionGeometry:
+def _geometry(scene: Scene, size: float, unit: float) -> fcl.CollisionGeometry:
+    """Of a body whose size is so many units; m each."""
     if scene.shape == "sphere" or scene.mesh is None:
         return fcl.Sphere(size / 2)
-    return _convex(scene.mesh.hull, size) if scene.shape == "hull" else _surface(scene.mesh, size)
+    solid = scene.solid_of(size * unit)
+    # the unit is a power of two, so neither product loses a digit
+    return (_convex if scene.shape == "hull" else _surface)(solid.vertices / unit, solid.faces)
 
 
-def _convex(hull: Hull, size: float) -> fcl.Convex:
+def _convex(vertices: Floats, faces: Triangles) -> fcl.Convex:
     # each face is preceded by its number of corners
-    faces = np.hstack([np.full((len(hull.faces), 1), 3, np.int64), hull.faces.astype(np.int64)])
-    return fcl.Convex(hull.vertices * size, len(hull.faces), faces.ravel())
+    counted = np.hstack([np.full((len(faces), 1), 3, np.int64), faces.astype(np.int64)])
+    return fcl.Convex(vertices, len(faces), counted.ravel())
 
 
-def _surface(mesh: Mesh, size: float) -> fcl.BVHModel:
+def _surface(vertices: Floats, faces: Triangles) -> fcl.BVHModel:
     model = fcl.BVHModel()
-    model.beginModel(len(mesh.vertices), len(mesh.faces))
-    model.addSubModel(mesh.vertices * size, mesh.faces)
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(vertices, faces)
     model.endModel()
     return model

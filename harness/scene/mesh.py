@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from harness.scene.hull import Hull
+
+Triangles: TypeAlias = NDArray[np.int32]
+"""(f, 3), numbers of vertices."""
+
+
+class Surface(NamedTuple):
+    """Triangles: (v, 3) float array of vertices, (f, 3) int32 array of corners."""
+
+    vertices: NDArray[np.float64]
+    faces: Triangles
 
 
 @dataclass(frozen=True, eq=False)

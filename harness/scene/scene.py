@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
-from harness.scene.mesh import Mesh
+from harness.scene.hull import Hull
+from harness.scene.mesh import Mesh, Surface
 
 Shape = Literal["sphere", "hull", "mesh"]
 
@@ -24,16 +26,35 @@ class Scene:
     mesh : the mesh all bodies share; None only for spheres
     bodies : as they are at time 0
     box : closed, centred at the origin
+    hulls : by the size of a body in m, its hull in m, where it is not to be that of the mesh: so that every backend of
+        a comparison gets the very hull that one of them makes of it
     """
 
     shape: Shape
     mesh: Mesh | None
     bodies: Bodies
     box: Box
+    hulls: Mapping[float, Hull] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.mesh is None and self.shape != "sphere":
             raise ValueError(f"shape {self.shape} needs a mesh")
+
+    def solid_of(self, size: float) -> Surface:
+        """What stands for a body of this size (m) in the narrow phase, in m, in its own frame: its hull or its mesh.
+
+        Raises
+        ------
+        ValueError
+            For spheres, which have neither vertices nor faces.
+        """
+        if self.mesh is None or self.shape == "sphere":
+            raise ValueError("a sphere has no vertices")
+        if self.shape == "hull" and size in self.hulls:
+            hull = self.hulls[size]
+            return Surface(hull.vertices, hull.faces)
+        solid = self.mesh.hull if self.shape == "hull" else self.mesh
+        return Surface(solid.vertices * size, solid.faces)
 
     @property
     def faces(self) -> int:

@@ -1,0 +1,110 @@
+"""The judge between backends: whether two bodies touch, decided in exact arithmetic and proven.
+
+It shares no code with any backend. Spheres are decided by their squared distance as a fraction, hulls by a common point
+or a separating plane, meshes by the triangles that come near each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import sqrt
+
+import numpy as np
+
+from harness.arrays import Floats
+from harness.compare import certificate
+from harness.compare.certificate import Judgement, distance_along
+from harness.compare.convex import CommonPoint, Plane, meet
+from harness.compare.exact import Placed, Point, world_points
+from harness.compare.surfaces import judge_surfaces
+from harness.scene.mesh import Triangles
+from harness.scene.scene import Scene
+
+# Steps towards the shortest way out of an overlap; each that helps comes strictly nearer, most need two or three.
+_MOST_STEPS = 10
+
+
+def judge(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) -> Judgement:
+    """Whether bodies i and j of a scene touch at these poses.
+
+    Parameters
+    ----------
+    scene : Scene
+    i, j : body numbers
+    positions : (n, 3) float array, m
+    quaternions : (n, 4) float array, w x y z
+    """
+    sizes = scene.bodies.sizes
+    if scene.shape == "sphere" or scene.mesh is None:
+        return _spheres(positions[i].tolist(), positions[j].tolist(), float(sizes[i]), float(sizes[j]))
+    first, second = (scene.solid_of(float(sizes[body])) for body in (i, j))
+    if scene.shape == "mesh":
+        return judge_surfaces(first, positions[i], quaternions[i], second, positions[j], quaternions[j])
+    placed = Placed(first.vertices, positions[i], quaternions[i])
+    other = Placed(second.vertices, positions[j], quaternions[j])
+    return _hulls(placed, first.faces, other, second.faces)
+
+
+def _spheres(first: Sequence[float], second: Sequence[float], size: float, other_size: float) -> Judgement:
+    squared = sum(((Fraction(b) - Fraction(a)) ** 2 for a, b in zip(first, second, strict=True)), Fraction(0))
+    reach = (Fraction(size) + Fraction(other_size)) / 2
+    excess = squared - reach * reach
+    gap = float(excess / (Fraction(sqrt(squared)) + reach))
+    proof = {"kind": "squared distance less squared sum of radii", "exact": str(excess)}
+    return Judgement(excess <= 0, gap, proof)
+
+
+def _hulls(first: Placed, faces: Triangles, second: Placed, other_faces: Triangles) -> Judgement:
+    one, other, unit = world_points(first, second)
+    found = meet(one, other)
+    if not found.holds(one, other):
+        raise ArithmeticError("a certificate does not hold")
+    if isinstance(found, Plane):
+        return Judgement(False, distance_along(found, one, other, unit), certificate.of_plane(found, one, other))
+    depth = _depth(one, faces, other, other_faces, unit)
+    return Judgement(True, -depth, certificate.of_common_point(found, one, first.position.tolist(), unit))
+
+
+def _depth(
+    first: Sequence[Point], faces: Triangles, second: Sequence[Point], other_faces: Triangles, unit: Fraction
+) -> float:
+    """m, the shortest way out of an overlap: by the normals of all faces, then bettered as edges may need it."""
+    one, other = _floats(first, unit), _floats(second, unit)
+    normals = np.vstack([-_normals(one, faces), _normals(other, other_faces)])
+    widths = (other @ normals.T).max(axis=0) - (one @ normals.T).min(axis=0)
+    depth, normal = float(widths.min()), normals[widths.argmin()]
+    extent = float(np.ptp(one, axis=0).max())
+    for _ in range(_MOST_STEPS):
+        # moved out along the best way so far, the sets lie apart, and their shortest connection is a better way
+        way = normal * (depth + 1e-3 * extent)
+        x, y, z = (round(Fraction(part) / unit) for part in way.tolist())
+        apart = meet([(a + x, b + y, c + z) for a, b, c in first], second)
+        if isinstance(apart, CommonPoint):
+            break
+        shorter = -distance_along(apart, first, second, unit)
+        if shorter >= depth * (1 - 1e-12):
+            break
+        depth = shorter
+        direction = np.array([float(part) for part in _shortened(apart.normal)])
+        normal = direction / np.linalg.norm(direction)
+    return max(depth, 0.0)
+
+
+def _shortened(point: Point) -> Point:
+    """The same direction, to more digits than floats hold, in integers that they can hold."""
+    excess = max(0, max(abs(part).bit_length() for part in point) - 100)
+    return point[0] >> excess, point[1] >> excess, point[2] >> excess
+
+
+def _floats(points: Sequence[Point], unit: Fraction) -> Floats:
+    return np.array([[part * unit.numerator / unit.denominator for part in point] for point in points])
+
+
+def _normals(points: Floats, faces: Triangles) -> Floats:
+    """Unit outward normals of the faces that have one."""
+    a, b, c = (points[faces[:, corner]] for corner in range(3))
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    flat = lengths[:, 0] == 0
+    return np.asarray(normals[~flat] / lengths[~flat], np.float64)

@@ -1,0 +1,56 @@
+"""The poses that backends are compared at: those that bodies fly through, which no backend's answer can change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from harness.arrays import Floats
+from harness.motion.kinematics import Flight
+from harness.scene.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Where all bodies of a scene are at one moment.
+
+    Parameters
+    ----------
+    name : what a person calls it, such as "frame 12"
+    positions : (n, 3) float array, m
+    quaternions : (n, 4) float array, w x y z
+    """
+
+    name: str
+    positions: Floats
+    quaternions: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class PoseSet:
+    """A scene and the poses at which it is looked at.
+
+    Parameters
+    ----------
+    scene : Scene
+    poses : what makes the poses, in the order in which every backend is asked, from the scene with the hulls that are
+        really compared: contacts are exact only of those
+    """
+
+    scene: Scene
+    poses: Callable[[Scene], Sequence[Pose]]
+
+
+def flown(scene: Scene, frames: int, dt: float) -> PoseSet:
+    """Bodies that fly through each other, from the start to frame `frames`, `dt` (s) apart.
+
+    With a response no body would ever be seen to overlap another.
+    """
+    return PoseSet(scene, lambda held: tuple(_frames(held, frames, dt)))
+
+
+def _frames(scene: Scene, frames: int, dt: float) -> Iterator[Pose]:
+    flight = Flight(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
+    for frame in range(frames + 1):
+        flight.move_to(frame * dt)
+        yield Pose(f"frame {frame}", flight.positions.copy(), flight.quaternions.copy())

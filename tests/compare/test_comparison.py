@@ -1,0 +1,121 @@
+"""Backends with a known defect are caught and named; sound ones are not accused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from harness.cli.main import main
+from harness.compare.comparison import compare
+from harness.compare.isolated import Isolated
+from harness.compare.poses import flown
+from tests.conftest import random_scene
+
+EXPERIMENT = """
+title: Crowd
+scene: {shape: SHAPE, MESH count: 20, box: [4, 4, 4], overlap: allow}
+motion: {duration: 1, dt: 1/30, response: none}
+"""
+
+
+def written(folder, shape):
+    mesh = "" if shape == "sphere" else "mesh: cube.ply,"
+    path = folder / "crowd.yaml"
+    path.write_text(EXPERIMENT.replace("SHAPE", shape).replace("MESH", mesh))
+    return str(path)
+
+
+def compared(capsys, *arguments):
+    code = main(["compare", *arguments, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("shape", ["sphere", "hull"])
+def test_fcl_and_pybullet_have_no_real_disagreement(shape, tmp_path, capsys):
+    code, document = compared(capsys, written(tmp_path, shape))
+    assert code == 0
+    assert document["cases"] == []
+    (pair,) = document["pairs"]
+    assert list(pair) == [
+        *("backends", "shape", "poses", "verdicts"),
+        *("agree", "undecided", "containment", "approximation", "real"),
+    ]
+    assert pair["backends"] == ["fcl", "pybullet"]
+    kinds = ("agree", "undecided", "containment", "approximation", "real")
+    assert pair["verdicts"] == sum(pair[kind] for kind in kinds) > 31 * 190
+
+
+@pytest.mark.parametrize(
+    ("name", "shape"),
+    [("drops", "sphere"), ("flips", "sphere"), ("swaps", "sphere")],
+)
+def test_a_defect_is_caught_and_its_backend_named(name, shape, defective, tmp_path, capsys):
+    names = f"fcl,{defective(name)}"
+    code, document = compared(capsys, written(tmp_path, shape), "--backends", names, "--set", "count=60")
+    assert code == 1
+    (pair,) = document["pairs"]
+    assert pair["real"] == len(document["cases"]) > 0
+    for case in document["cases"]:
+        assert case["wrong"] == name
+        assert case["backends"] == ["fcl", name]
+        assert abs(case["gap"]) > 0
+        assert case["certificate"]["kind"]
+
+
+@pytest.mark.parametrize("name", ["inflates", "unturned"])
+def test_a_defect_of_turned_shapes_is_caught_as_bodies_fly(name, defective):
+    defective(name)
+    found = compare([flown(random_scene("hull", 20, 3.0), 10, 0.1)], ["fcl", name])
+    assert {case.wrong for case in found.cases} == {name}
+    assert found.tallies[0].real == len(found.cases)
+
+
+@pytest.mark.parametrize("name", ["crashes", "hangs"])
+def test_a_backend_that_dies_at_a_pose_is_asked_the_others(name, defective):
+    defective(name)
+    scene = random_scene("sphere", 8, 3.5, seed=2)
+    scene.bodies.velocities[:] = 0.0
+    scene.bodies.positions[0] = [-1.0, 0.0, 0.0]
+    scene.bodies.velocities[0] = [0.5, 0.0, 0.0]
+    setting = flown(scene, 4, 0.1)
+    deadly = sum(abs(pose.positions[0, 0]) > 0.9 for pose in setting.poses(scene))
+    assert deadly == 2
+    found = compare([setting], ["fcl", name], patience=2.0)
+    assert [(failure.backend, failure.call) for failure in found.failures] == [(name, 1), (name, 2)]
+    assert ("SIGSEGV" if name == "crashes" else "no answer within 2 s") in found.failures[0].reason
+    assert found.tallies[0].poses == 5 - deadly
+    assert not found.passed
+
+
+def test_a_mesh_replaced_by_its_hull_is_an_approximation(tmp_path, capsys):
+    arguments = [
+        "--set",
+        "mesh=pumpkin-1753.ply",
+        "--set",
+        "count=12",
+        "--set",
+        "box=[2, 2, 2]",
+        "--set",
+        "duration=0.5",
+    ]
+    path = written(tmp_path, "mesh")
+    code, document = compared(capsys, path, *arguments)
+    (pair,) = document["pairs"]
+    assert code == 0
+    assert pair["approximation"] > 0
+
+
+def test_an_answer_that_is_none_is_a_failure_at_its_pose():
+    scene = random_scene("sphere", 3, 3.0)
+    setting = flown(scene, 0, 1.0)
+    (pose,) = setting.poses(scene)
+    with Isolated("fcl", scene) as asked:
+        broken = type(pose)("nowhere", np.full((3, 3), np.nan), pose.quaternions)
+        assert "not finite" in asked.pairs(broken)
+        assert not isinstance(asked.pairs(pose), str)
+
+
+def test_backends_that_there_are_not_are_an_error(tmp_path, capsys):
+    assert main(["compare", written(tmp_path, "sphere"), "--backends", "fcl,pybulet"]) == 2
+    assert 'did you mean "pybullet"' in capsys.readouterr().err
+    assert main(["compare", written(tmp_path, "sphere"), "--backends", "fcl"]) == 2
