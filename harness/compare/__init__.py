@@ -1,0 +1,1 @@
+"""Backends on the same poses: verdicts, judged in exact arithmetic and minimised."""
