@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +78,12 @@ class Listed:
         if self.page.findings.warnings:
             found.append((plural(len(self.page.findings.warnings), "warning"), "noisy"))
         return found
+
+    @property
+    def group(self) -> str:
+        """The folder of experiments it belongs to; "" for one that stands alone."""
+        name = self.page.record.name
+        return name.rpartition("/")[0].replace("/", ", ").replace("-", " ").capitalize()
 
     @property
     def size(self) -> str:
@@ -241,11 +248,19 @@ def _index(
         navigation=_navigation("", bool(claims), sweeps) if pages else [Link("Overview", "", here=True)],
         pages=listed,
         failures=[(entry, sentence) for entry in listed for sentence in entry.page.findings.failures],
-        claims=claims,
+        groups=[(group, list(entries)) for group, entries in groupby(listed, key=lambda entry: entry.group)],
+        claims=_by_source(claims),
         machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
         totals=totals,
         footer=_footer(records),
     )
+
+
+def _by_source(claims: Sequence[tuple[Listed, VerdictRow]]) -> list[tuple[str, list[tuple[Listed, VerdictRow]]]]:
+    """Claims under a heading each: those of the homework, whose numbers these are held against, then all others."""
+    homework = [claim for claim in claims if str(claim[1].criterion.get("source", "")).startswith("homework")]
+    others = [claim for claim in claims if claim not in homework]
+    return [(title, found) for title, found in (("Of the homework", homework), ("Of our own", others)) if found]
 
 
 def _compared(environment: Environment, found: Comparison, claims: bool, records: Sequence[ExperimentRecord]) -> str:

@@ -57,7 +57,7 @@ class Outline(HTMLParser):
 
 
 def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
-    links = re.findall(r'<h3><a href="([^"]+)"', pages["index.html"])
+    links = re.findall(r'<h4><a href="([^"]+)"', pages["index.html"])
     assert len(links) == len(experiments(database))
     assert set(links) <= pages.keys()
 
@@ -245,7 +245,7 @@ def test_the_fastest_is_named_with_how_far_it_is_ahead(report_of):
 
     swept = {"count": [10, 40, 160], "backend": ["fcl", "pybullet"]}
     text = text_of(page(report_of(swept=swept, fate=slower), "x"))
-    found = re.search(r"At count 160: fcl has the lowest .*?that is (\S+)× \[(\S+), (\S+)\] ahead", text)
+    found = re.search(r"For 160\sbodies[^:]*: fcl has the lowest .*?that is (\S+)× \[(\S+), (\S+)\] ahead", text)
     ratio, low, high = found.groups()
     assert float(low) <= float(ratio) <= float(high)
     assert 3.5 < float(ratio) < 4.5
