@@ -79,6 +79,7 @@ def stability(arrangement: Arrangement) -> str:
 def _fastest(arrangement: Arrangement) -> list[Markup]:
     """Who is ahead at either end of x, in every panel."""
     found = []
+    methods = arrangement.methods
     xs = arrangement.x_values or (None,)
     many = len(arrangement.panels) > 2
     # the far end first: that is where methods part
@@ -86,8 +87,8 @@ def _fastest(arrangement: Arrangement) -> list[Markup]:
     metrics = [metric for metric in arrangement.metrics if is_clock(metric)][: 1 if many else 2]
     for metric in metrics:
         for panel in arrangement.panels:
-            lines = [series for series in arrangement.series if series.panel == panel]
-            for x in ends:
+            lines = [series for series in methods if series.panel == panel]
+            for x in ends if methods is arrangement.series else (None,):
                 ranked = rank(lines, x, metric, arrangement.floor(metric))
                 if len(ranked) > 1:
                     found.append(_lead(arrangement, ranked, panel, x, metric))
@@ -127,7 +128,7 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
 def _scene(arrangement: Arrangement, cell: Cell, panel: str, x: object) -> str:
     """The scene of a point, and what else of it is swept."""
     parts = [scene_text(cell.point.parameters)]
-    if arrangement.x and arrangement.x not in SCENE_LEAVES:
+    if arrangement.x and x is not None and arrangement.x not in SCENE_LEAVES:
         parts.append(setting(arrangement.x, x))
     if panel and arrangement.panel_leaf not in SCENE_LEAVES:
         parts.append(panel)

@@ -234,6 +234,7 @@ def _index(
         # ids are unique on a page, and the overview shows figures of many
         figure = replace(page.figures[0], name=f"card{place}") if page.figures else None
         listed.append(Listed(page, f"{page.folder}/index.html", figure))
+    listed.sort(key=lambda entry: entry.group)
     claims: list[tuple[Listed, VerdictRow]] = [(entry, row) for entry in listed for row in entry.page.record.claims]
     used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in pages))
     total, failed = sum(len(page.runs) for page in pages), sum(page.failed for page in pages)
