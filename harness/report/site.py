@@ -32,6 +32,7 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.summary import summary
 from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
@@ -143,6 +144,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     yield "index.html", _index(environment, pages, records, compared is not None, machines(database))
     if compared is not None:
         yield SWEEPS, _compared(environment, compared, claims, records)
+    yield "findings.md", summary(pages)
     yield "runs.csv", csv(table)
 
 

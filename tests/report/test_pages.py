@@ -271,3 +271,10 @@ def test_frames_per_second_rank_the_other_way_round(report_of):
 def test_a_metric_that_no_run_reports_is_said(report_of):
     html = page(report_of(report={"y": ["position_error", "pair_seconds"]}), "x")
     assert "No run reports position_error" in html
+
+
+def test_the_findings_come_as_markdown_with_a_row_an_experiment(database, pages):
+    rows = [line for line in pages["findings.md"].splitlines() if line.startswith("| ")][1:]
+    assert [row.split(" | ")[0].removeprefix("| ") for row in rows] == [row.title for row in experiments(database)]
+    assert all(row.count(" | ") == 2 for row in rows)
+    assert not re.search(r"</?(?!sup)\w+>", pages["findings.md"])
