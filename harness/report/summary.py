@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from html import unescape
 
-from markupsafe import Markup
+from markupsafe import escape
 
 from harness.report.pages import ExperimentPage, machine_text
 
@@ -40,6 +39,5 @@ def _claims(page: ExperimentPage) -> str:
 
 def _cell(text: str) -> str:
     """Text or markup of a page as an entry of a Markdown table; Markdown has no raised text of its own."""
-    if isinstance(text, Markup):
-        text = unescape(re.sub(r"<(?!/?sup>)[^>]+>", "", re.sub(r"</?strong>", "**", text)))
-    return text.replace("|", "\\|").replace("\n", " ")
+    kept = re.sub(r"<(?!/?sup>)[^>]+>", "", re.sub(r"</?strong>", "**", str(escape(text))))
+    return kept.replace("|", "\\|").replace("\n", " ")
