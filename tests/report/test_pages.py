@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+from html import unescape
 from html.parser import HTMLParser
 
 import pytest
@@ -275,6 +276,7 @@ def test_a_metric_that_no_run_reports_is_said(report_of):
 
 def test_the_findings_come_as_markdown_with_a_row_an_experiment(database, pages):
     rows = [line for line in pages["findings.md"].splitlines() if line.startswith("| ")][1:]
-    assert [row.split(" | ")[0].removeprefix("| ") for row in rows] == [row.title for row in experiments(database)]
+    titles = [unescape(row.split(" | ")[0].removeprefix("| ")) for row in rows]
+    assert titles == [row.title for row in experiments(database)]
     assert all(row.count(" | ") == 2 for row in rows)
     assert not re.search(r"</?(?!sup)\w+>", pages["findings.md"])
