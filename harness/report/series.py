@@ -49,17 +49,15 @@ class Cell:
         finite: npt.NDArray[np.float64] = values[np.isfinite(values)]
         return finite
 
-    def by_repeat(self, metric: str) -> dict[int, float]:
-        """The metric of every good run that reports it, to be paired with another point's."""
+    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
+        """The metric of every good run that reports it, by repeat and machine.
+
+        To be paired with another point's: times of two machines are not compared.
+        """
         if metric not in self.good.columns:
             return {}
-        pairs = zip(self.good["repeat"], self.good[metric], strict=True)
-        return {int(repeat): float(value) for repeat, value in pairs if math.isfinite(value)}
-
-    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
-        """The same by repeat and machine: times of two machines are not compared."""
-        machines = dict(zip(self.good["repeat"], self.good["machine"], strict=True)) if len(self.good) else {}
-        return {(repeat, str(machines[repeat])): value for repeat, value in self.by_repeat(metric).items()}
+        rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
+        return {(int(repeat), str(machine)): float(value) for repeat, machine, value in rows if math.isfinite(value)}
 
     def summary(self, metric: str) -> Summary | None:
         """Median and interval of the metric, None where no good run reports it."""
