@@ -18,6 +18,7 @@ from harness.motion.hits import Outcome, Trace
 from harness.motion.plan import Plan
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
 from harness.motion.response import Response
+from harness.motion.soundness import refuse_lost
 from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene
 
@@ -70,6 +71,7 @@ def fly_predicted(
         simulation.advance(duration * look / LOOKS)
         clock.lap("run_seconds")
         positions, velocities = simulation.positions, simulation.velocities
+        refuse_lost(positions, velocities, simulation.time)
         conservation.observe(velocities)
         outside |= (np.abs(positions) > scene.box.half).any(axis=1)
         if depth is not None:
