@@ -58,7 +58,7 @@ SKIN = 0.65
 # model).
 CONTACT = 1e-6
 # What a stalled sphere waits, in the same unit, and how many hits in no time make it stall. Elastic ones come to an end
-# and may be many, but a whole crystal without room to move would have each of its spheres take that share: it is shared.
+# and may be many; but in a crystal without room each sphere would take that many, so they are shared among all.
 PAUSE = 1e-3
 BURST = {NONE: 1000, REFLECT: 1000, ELASTIC: 1_000_000}
 BURST_LEAST = 100
