@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import partial
+from math import isfinite
 from typing import Any
 
 from harness.backends import registry
@@ -14,8 +15,10 @@ from harness.backends.protocol import approximations
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
+from harness.motion.invariance import invariance
 from harness.motion.plan import Plan, make_plan
 from harness.motion.predicted import fly_predicted
+from harness.motion.soundness import NotANumberError
 from harness.motion.stepped import fly_stepped
 from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
@@ -34,7 +37,14 @@ class Result:
     flights: int = 1
 
 
-def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, traced: bool = False) -> Result:
+def execute(
+    point: Point,
+    mesh: Mesh | None,
+    *,
+    memory: int | None = None,
+    traced: bool = False,
+    asked: Collection[str] = (),
+) -> Result:
     """Run a point once, in this process.
 
     Parameters
@@ -43,11 +53,14 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     mesh : the mesh its scene names
     memory : B that the scene may need
     traced : keep every hit
+    asked : metrics that are made on demand alone, and are demanded
 
     Raises
     ------
     PlacementError, SceneSizeError, InputError
         If the point cannot be run as it is declared.
+    NotANumberError
+        If what it came to is not all numbers.
     """
     warm_up(point)
     clock = Clock("setup_seconds")
@@ -57,19 +70,37 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     clock.lap("setup_seconds")
     outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
+    metrics |= invariance(asked, scene, partial(_once_more, point, plan))
+    _refuse_what_is_no_number(metrics)
     return Result(metrics, plan, outcome.trace, flights)
 
 
-def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[], Outcome]:
-    """One flight of the scene, from its start, whenever it is called; what it needs is loaded."""
+def _flight(point: Point, scene: Scene, plan: Plan, traced: bool, slower: float = 1.0) -> Callable[[], Outcome]:
+    """One flight of the scene, from its start, whenever it is called; what it needs is loaded.
+
+    `slower` is by how much its duration and its frames are longer than the point says.
+    """
     motion = point.motion
     answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
     if point.engine.algorithm == "predictive":
-        return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
+        return partial(fly_predicted, scene, plan, duration=motion.duration * slower, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
         backend.load(scene)
-    return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt, **answers)
+    return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt * slower, **answers)
+
+
+def _once_more(point: Point, plan: Plan, scene: Scene, slower: float) -> Trace:
+    """Another scene flown by the method of the point."""
+    trace = _flight(point, scene, plan, traced=True, slower=slower)().trace
+    assert trace is not None, "a traced flight has a trace"
+    return trace
+
+
+def _refuse_what_is_no_number(metrics: Mapping[str, float]) -> None:
+    wrong = [f"{name} is {value}" for name, value in metrics.items() if not isfinite(value)]
+    if wrong:
+        raise NotANumberError(", ".join(wrong))
 
 
 def plan_of(point: Point, scene: Scene) -> Plan:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -17,13 +17,13 @@ from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import fingerprint, machine_facts, package_versions, source_commit
 from harness.measure.metrics import METRICS
-from harness.measure.verdicts import judge
+from harness.measure.verdicts import expected_refusals, judge
 from harness.motion.hits import Trace
 from harness.runner.estimate import Estimate
 from harness.runner.executor import Alone, Done, Executor
 from harness.runner.key import point_key
 from harness.runner.schedule import Choice, Job, Schedule, schedule
-from harness.runner.servers import Servers, mesh_of, task_of
+from harness.runner.servers import Servers, asked_of, mesh_of, task_of
 from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
@@ -47,6 +47,7 @@ class Summary:
     experiments : by the name of each experiment, the statuses of its runs of now; a shared run counts for the first
     seconds : by the same names, the elapsed time of these runs
     broken : experiment and statement of every expectation that fails
+    refused : runs that were rejected, as their experiment expects
     """
 
     kept: Counter[str] = field(default_factory=Counter)
@@ -55,12 +56,13 @@ class Summary:
     experiments: dict[str, Counter[str]] = field(default_factory=dict)
     seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     broken: list[tuple[str, str]] = field(default_factory=list)
+    refused: int = 0
 
     @property
     def failed(self) -> bool:
         """Whether a run, now or earlier, or an expectation failed."""
         statuses = self.kept + self.done
-        return statuses.total() > statuses["ok"] or bool(self.broken)
+        return statuses.total() > statuses["ok"] + self.refused or bool(self.broken)
 
 
 class Watcher(Protocol):
@@ -77,9 +79,10 @@ class Watcher(Protocol):
 
 
 class Work(NamedTuple):
-    """What a sweep would do: the key of each point by its id, the runs, and how long they may take."""
+    """What a sweep would do: the key of each point by its id, those wanted, the runs, and how long they may take."""
 
     keys: dict[int, str]
+    wanted: set[str]
     schedule: Schedule
     estimate: Estimate
 
@@ -108,11 +111,13 @@ def work_of(
     """
     keys: dict[int, str] = {}
     parameters: dict[str, dict[str, Any]] = {}
+    asked: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
     for experiment in experiments:
         for point in experiment.points:
             mesh = mesh_of(experiment, point, meshes)
             key = keys[id(point)] = point_key(point, mesh)
             parameters[key] = _parameters(point, mesh)
+            asked[key] |= asked_of(experiment)
     wanted = {key for key, found in parameters.items() if choice.wants(found)}
     if choice.only and parameters and not wanted:
         raise InputError("--only: no point of these experiments has these values")
@@ -122,8 +127,12 @@ def work_of(
     else:
         sweeps = history.broken_off(command) if choice.fresh else None
         status, controlled = history.done(parameters, sweeps), history.controlled(parameters, sweeps)
+        for key, repeat in history.without(asked):
+            status[key].pop(repeat, None)
     found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=choice.retry)
-    return Work(keys, found, Estimate(history.durations() if history else {}, parameters))
+    jobs = [job if job.control else replace(job, asked=asked[job.key]) for job in found.jobs]
+    found = found._replace(jobs=jobs)
+    return Work(keys, wanted, found, Estimate(history.durations() if history else {}, parameters))
 
 
 def sweep(
@@ -166,6 +175,7 @@ def sweep(
             _count(summary, done)
             work.estimate.learn(done.job, done.report.conditions.get("seconds", 0.0))
             watch.after(done.job, done.report)
+    refused: set[tuple[str, int]] = set()
     for experiment in experiments:
         table = runs(database.path, [experiment.name])
         expectations = [_verdict(criterion, table, experiment, "expectation") for criterion in experiment.expect]
@@ -173,6 +183,8 @@ def sweep(
         database.add_verdicts(number, listed[experiment.name], "expectation", expectations)
         database.add_verdicts(number, listed[experiment.name], "claim", claims)
         summary.broken += [(experiment.name, row.statement) for row in expectations if row.verdict == "fails"]
+        refused |= expected_refusals(experiment.expect, table[table["point"].isin(work.wanted)])
+    summary.refused = len(refused)
     database.finish_sweep(number)
     return summary
 
