@@ -15,6 +15,7 @@ from harness.arrays import Floats, Pairs
 from harness.backends import registry
 from harness.backends.protocol import approximations
 from harness.broadphase.grid import Grid
+from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
@@ -82,6 +83,8 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[]
         return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
+        if scene.shape not in backend.shapes:
+            raise InputError(f'backend "{backend.name}" has no shape {scene.shape}, only {", ".join(backend.shapes)}')
         backend.load(scene)
     return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt, **answers)
 
