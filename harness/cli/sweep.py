@@ -174,6 +174,8 @@ def _foretell(
         time = "no run like these was ever done, so there is no estimate of time"
     else:
         time = f"about {spoken(total + START_UP * len(backends))}, from earlier runs of {known} of them"
+    for why in work.lacking:
+        print(f"points passed over: {why}")
     print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
@@ -195,6 +197,8 @@ def _say(summary: Summary, arguments: argparse.Namespace) -> None:
     failed_before = summary.kept.total() - summary.kept["ok"]
     if failed_before:
         print(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
+    for why in summary.lacking:
+        print(f"points passed over: {why}")
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
     option = "" if arguments.db == DATABASE else f" --db {arguments.db}"
