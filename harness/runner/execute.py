@@ -12,6 +12,7 @@ from typing import Any
 
 from harness.backends import registry
 from harness.backends.protocol import approximations
+from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
@@ -86,6 +87,8 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool, slower: float 
         return partial(fly_predicted, scene, plan, duration=motion.duration * slower, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
+        if scene.shape not in backend.shapes:
+            raise InputError(f'backend "{backend.name}" has no shape {scene.shape}, only {", ".join(backend.shapes)}')
         backend.load(scene)
     return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt * slower, **answers)
 
