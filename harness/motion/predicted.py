@@ -18,7 +18,8 @@ from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Flight
 from harness.motion.plan import Plan
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
-from harness.motion.predictive.solid_simulation import Form, SolidSimulation
+from harness.motion.predictive.solid_simulation import SolidSimulation
+from harness.motion.predictive.solids import Form
 from harness.motion.response import Response
 from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from harness.motion.predictive.solid_simulation import Form, SolidSimulation
+from harness.motion.predictive.solid_simulation import SolidSimulation
+from harness.motion.predictive.solids import Form
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies

@@ -26,6 +26,7 @@ from harness.motion.predictive.state import (
     CROSSINGS,
     FRESH,
     GRID,
+    HITS,
     KIND,
     NONE,
     NOTHING,
@@ -54,10 +55,12 @@ from harness.motion.predictive.windows import (
     APART,
     COUNT,
     DUE,
-    INSIDE,
     NOBODY,
     OTHER,
+    OTHER_HITS,
     PHASE,
+    TOUCHING,
+    UNSURE,
     Windows,
     find,
     holds,
@@ -159,7 +162,7 @@ def meet(solid: SolidWorld, k: int, w: int, now: float) -> tuple[int, int, int, 
         return SAME, NOBODY, ALL, 0
     if world.rules.response == NONE:
         begin_to_touch(world, k, p, now)
-        windows.remove(solid.windows, k, w)
+        solid.windows.marks[w, PHASE] = TOUCHING
     elif hit_pair(world, k, p, now):
         return ANEW, p, ALL, 0
     else:
@@ -224,21 +227,34 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     theirs = find(open_, open_.heads[p], k)
     if holds(open_, marks, theirs) or (not anew and holds(open_, marks, find(open_, known, p))):
         return
+    before = find(open_, known, p) if anew else NOBODY
+    if before < 0:
+        before = theirs
     approach, speed = x * u + y * v + z * w, u * u + v * v + w * w
+    phase = APART
     if world.rules.response == NONE:
         # all the time that the spheres overlap
         miss = (x * x + y * y + z * z) - approach * approach / speed if speed > 0.0 else 0.0
         end = now + (sqrt(max(reach * reach - miss, 0.0) / speed) - approach / speed) if speed > 0.0 else inf
+        if inside and not were_apart(solid, k, p, before, theirs):
+            phase = UNSURE
     else:
         end = now - approach / speed
-    window = windows.add(open_, marks, k, p, now + wait, end, INSIDE if inside else APART)
-    before = find(open_, known, p) if anew else NOBODY
-    if before < 0:
-        before = theirs
+    window = windows.add(open_, marks, k, p, now + wait, end, phase)
     if before >= 0:
-        # of the time before the last hit: no longer valid, but a good place to start from
+        # no longer valid, but a good place to start from
         for seed in range(windows.SEEDS):
             open_.seeds[window, seed] = open_.seeds[before, seed]
+
+
+@step
+def were_apart(solid: SolidWorld, k: int, p: int, before: int, theirs: int) -> bool:
+    """Whether the last window of two bodies stood until body k's last hit, and still waited for their contact."""
+    open_, marks = solid.windows, solid.world.spheres.marks
+    if before < 0:
+        return False
+    stood = open_.marks[before, OTHER_HITS] == (marks[k, HITS] - 1 if before == theirs else marks[p, HITS])
+    return bool(stood and open_.marks[before, PHASE] in (APART, DUE))
 
 
 @step

@@ -2,33 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_flight import SolidWorld, fly_solids
-from harness.motion.predictive.solids import solids
+from harness.motion.predictive.solids import Form, solids
 from harness.motion.predictive.state import ADVANCES, BOX_TESTS, LABEL, NARROW_TESTS
 from harness.motion.predictive.windows import enlarged, windows
-from harness.narrowphase.support import support_map
-from harness.narrowphase.units import unit_of
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
-from harness.scene.scene import Scene
 
 # Windows that a body has room for at first.
 WINDOWS = 6
-
-
-class Form:
-    """What the narrow search needs of a shape, made once for all bodies.
-
-    Parameters
-    ----------
-    scene : Scene of shape `hull` or `mesh`
-    """
-
-    def __init__(self, scene: Scene) -> None:
-        if scene.mesh is None or scene.shape == "sphere":
-            raise ValueError("a sphere has no surface to search")
-        self.hull = support_map(scene.mesh.hull.vertices)
 
 
 class SolidSimulation(Simulation):
@@ -69,14 +54,7 @@ class SolidSimulation(Simulation):
         # The narrow search takes the time, not the memory: no need to keep neighbours together
         self._world = self._world._replace(rules=self._world.rules._replace(tidying=0))
         order = self._world.spheres.marks[:, LABEL]
-        body = solids(
-            form.hull,
-            bodies.sizes[order],
-            bodies.spins[order],
-            bodies.quaternions[order],
-            tolerance,
-            1.0 / unit_of(bodies.sizes),
-        )
+        body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64
         self._solid = SolidWorld(self._world, body, windows(len(bodies), room))
 

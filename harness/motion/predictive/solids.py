@@ -12,12 +12,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.arrays import Floats
+from harness.arrays import Floats, Ints
 from harness.kernel import kernel, step, strict_step
 from harness.motion.predictive.state import EPOCH, EPOCH_REST, TIME, VX, X
 from harness.narrowphase.advancement import Motion
-from harness.narrowphase.support import SupportMap
+from harness.narrowphase.support import SupportMap, support_map
+from harness.narrowphase.units import unit_of
 from harness.narrowphase.vectors import Vector
+from harness.scene.bodies import Bodies
+from harness.scene.scene import Scene
 
 Quaternion = tuple[float, float, float, float]
 
@@ -27,12 +30,28 @@ TURN, TURN_REST = 2.0 * pi, 2.4492935982947064e-16
 SPLIT = 134217729.0
 
 
+class Form:
+    """What the narrow search needs of a shape, made once for all bodies.
+
+    Parameters
+    ----------
+    scene : Scene of shape `hull` or `mesh`
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        if scene.mesh is None or scene.shape == "sphere":
+            raise ValueError("a sphere has no surface to search")
+        self.hull = support_map(scene.mesh.hull.vertices)
+        self.inradius = scene.mesh.hull.inradius
+
+
 class Solids(NamedTuple):
     """n bodies of one shape.
 
     Attributes
     ----------
     hull : SupportMap, of diameter 1
+    inradius : of a sphere around the centre that the hull holds
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
     spins : (n, 3) rad/s, in the world
@@ -44,6 +63,7 @@ class Solids(NamedTuple):
     """
 
     hull: SupportMap
+    inradius: float
     sizes: Floats
     reaches: Floats
     spins: Floats
@@ -54,13 +74,21 @@ class Solids(NamedTuple):
     scale: float
 
 
-def solids(
-    hull: SupportMap, sizes: Floats, spins: Floats, quaternions: Floats, tolerance: float, scale: float
-) -> Solids:
-    """Solids at time 0; see `Solids` for what is what."""
+def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
+    """Solids at time 0, in another order than the bodies.
+
+    Parameters
+    ----------
+    form : Form
+    bodies : Bodies
+    order : (n,) int array, which body comes where
+    tolerance : as in `Solids`
+    """
+    sizes, spins, start = bodies.sizes[order], bodies.spins[order], bodies.quaternions[order]
     reaches, rates = np.empty(len(sizes)), np.empty((len(sizes), 2))
-    measure(hull.vertices, sizes, spins, quaternions, reaches, rates)
-    return Solids(hull, sizes, reaches, spins, rates, quaternions, quaternions.copy(), tolerance, scale)
+    measure(form.hull.vertices, sizes, spins, start, reaches, rates)
+    scale = 1.0 / unit_of(sizes)
+    return Solids(form.hull, form.inradius, sizes, reaches, spins, rates, start, start.copy(), tolerance, scale)
 
 
 @kernel
