@@ -102,10 +102,17 @@ def _mesh_pairs() -> None:
 
 
 def _spheres_predicted() -> None:
+    _predict("sphere")
     scene = _two("sphere")
-    plan = make_plan(scene, backend="", algorithm="predictive", response="elastic")
-    fly_predicted(scene, plan, duration=0.5, response="elastic")
     Penetration(scene).deepest(_PAIR, scene.bodies.positions, scene.bodies.quaternions)
+
+
+def _hulls_predicted() -> None:
+    _predict("hull")
+
+
+def _meshes_predicted() -> None:
+    _predict("mesh")
 
 
 class _Piece(NamedTuple):
@@ -119,6 +126,7 @@ class _Piece(NamedTuple):
 _STEPPED = ("brute-force", "grid", "tree", "native")
 _ALL: tuple[Shape, ...] = ("sphere", "hull", "mesh")
 _SPHERES: tuple[Shape, ...] = ("sphere",)
+_HULLS: tuple[Shape, ...] = ("hull",)
 _TURNED: tuple[Shape, ...] = ("hull", "mesh")
 _MESHES: tuple[Shape, ...] = ("mesh",)
 _PIECES = (
@@ -129,6 +137,8 @@ _PIECES = (
     _Piece(_hull_pairs, ("grid",), _TURNED),
     _Piece(_mesh_pairs, ("grid",), _MESHES),
     _Piece(_spheres_predicted, ("predictive",), _SPHERES),
+    _Piece(_hulls_predicted, ("predictive",), _HULLS),
+    _Piece(_meshes_predicted, ("predictive",), _MESHES),
 )
 
 _PAIR: Pairs = np.array([[0, 1]])
@@ -161,6 +171,14 @@ def _step(shape: Shape) -> None:
     for response in _RESPONSES:
         plan = make_plan(scene, backend="", algorithm="native", response=response)
         fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
+
+
+def _predict(shape: Shape) -> None:
+    """A flight from event to event with every response."""
+    scene = _two(shape)
+    for response in _RESPONSES:
+        plan = make_plan(scene, backend="", algorithm="predictive", response=response)
+        fly_predicted(scene, plan, duration=0.3, response=response)
 
 
 class _Meeting:
