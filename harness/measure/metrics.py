@@ -97,7 +97,14 @@ METRICS: dict[str, Metric] = _table(
     Metric("missed_hits", "1", "error", "hits of the reference that were not reported, of the reference's hits"),
     Metric("extra_hits", "1", "error", "hits reported that the reference does not have, of the reference's hits"),
     Metric("time_error", "s", "error", "median absolute time error of matched hits"),
+    Metric("time_error_95", "s", "error", "95th percentile of the absolute time errors of matched hits"),
     Metric("position_error", "m", "error", "largest distance from the reference before the first divergence"),
+    Metric("divergence_time", "s", "error", "first hit that the reference does not share; the duration without one"),
+    Metric("reference_hits", "1", "error", "hits of the reference while the method watched"),
+    Metric("reference_error", "s", "error", "largest error found in a checked sample of the reference's hit times"),
+    Metric(
+        "missed_hits_expected", "1", "error", "mean over the reference's hits of max(0, 1 - length of contact / dt)"
+    ),
     Metric("peak_memory", "B", "resource", "largest resident memory of the run's process"),
 )
 
