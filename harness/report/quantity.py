@@ -82,9 +82,9 @@ def number(value: float | None) -> str:
     return _signed(f"{value:,.{_decimals(value)}f}".replace(",", THIN))
 
 
-def plural(count: int, noun: str) -> str:
-    """A count and its noun: "1 run", "50 runs"."""
-    return f"{number(count)}\u00a0{noun}{'' if count == 1 else 's'}"
+def plural(count: int, noun: str, nouns: str | None = None) -> str:
+    """A count and its noun: "1 run", "50 runs", and of an odd one "2 bodies"."""
+    return f"{number(count)}\u00a0{noun if count == 1 else nouns or noun + 's'}"
 
 
 def exponent_text(value: float) -> str:

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.summary import summary
 from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
@@ -77,6 +79,12 @@ class Listed:
         if self.page.findings.warnings:
             found.append((plural(len(self.page.findings.warnings), "warning"), "noisy"))
         return found
+
+    @property
+    def group(self) -> str:
+        """The folder of experiments it belongs to; "" for one that stands alone."""
+        name = self.page.record.name
+        return name.rpartition("/")[0].replace("/", ", ").replace("-", " ").capitalize()
 
     @property
     def size(self) -> str:
@@ -136,6 +144,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     yield "index.html", _index(environment, pages, records, compared is not None, machines(database))
     if compared is not None:
         yield SWEEPS, _compared(environment, compared, claims, records)
+    yield "findings.md", summary(pages)
     yield "runs.csv", csv(table)
 
 
@@ -227,6 +236,7 @@ def _index(
         # ids are unique on a page, and the overview shows figures of many
         figure = replace(page.figures[0], name=f"card{place}") if page.figures else None
         listed.append(Listed(page, f"{page.folder}/index.html", figure))
+    listed.sort(key=lambda entry: entry.group)
     claims: list[tuple[Listed, VerdictRow]] = [(entry, row) for entry in listed for row in entry.page.record.claims]
     used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in pages))
     total, failed = sum(len(page.runs) for page in pages), sum(page.failed for page in pages)
@@ -241,11 +251,19 @@ def _index(
         navigation=_navigation("", bool(claims), sweeps) if pages else [Link("Overview", "", here=True)],
         pages=listed,
         failures=[(entry, sentence) for entry in listed for sentence in entry.page.findings.failures],
-        claims=claims,
+        groups=[(group, list(entries)) for group, entries in groupby(listed, key=lambda entry: entry.group)],
+        claims=_by_source(claims),
         machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
         totals=totals,
         footer=_footer(records),
     )
+
+
+def _by_source(claims: Sequence[tuple[Listed, VerdictRow]]) -> list[tuple[str, list[tuple[Listed, VerdictRow]]]]:
+    """Claims under a heading each: those of the homework, whose numbers these are held against, then all others."""
+    homework = [claim for claim in claims if str(claim[1].criterion.get("source", "")).startswith("homework")]
+    others = [claim for claim in claims if claim not in homework]
+    return [(title, found) for title, found in (("Of the homework", homework), ("Of our own", others)) if found]
 
 
 def _compared(environment: Environment, found: Comparison, claims: bool, records: Sequence[ExperimentRecord]) -> str:
