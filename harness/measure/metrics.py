@@ -105,6 +105,7 @@ METRICS: dict[str, Metric] = _table(
     Metric(
         "missed_hits_expected", "1", "error", "mean over the reference's hits of max(0, 1 - length of contact / dt)"
     ),
+    Metric("missed_hits_deviation", "1", "error", "missed hits beyond the expected ones, in standard deviations"),
     Metric("peak_memory", "B", "resource", "largest resident memory of the run's process"),
 )
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
+from harness.arrays import Floats
 from harness.experiment.experiment import Point
 from harness.experiment.schema import EngineSpec
 from harness.measure.contacts import Contacts
@@ -90,8 +92,17 @@ def _replayed(point: Point, scene: Scene, trace: Trace, key: str) -> dict[str, f
         sizes = np.abs(found.errors)
         metrics |= {"time_error": float(np.median(sizes)), "time_error_95": float(np.quantile(sizes, 0.95))}
     if point.engine.algorithm != "predictive" and found.hits:
-        between = np.maximum(0.0, 1.0 - contacts.lengths[contacts.begins(until)] / point.motion.dt)
-        metrics["missed_hits_expected"] = float(between.mean())
+        metrics |= _tunnelling(contacts.lengths[contacts.begins(until)], point.motion.dt, found.missed)
+    return metrics
+
+
+def _tunnelling(lengths: Floats, dt: float, missed: int) -> dict[str, float]:
+    """What is missed where frames come at random: a contact of length t with probability 1 - t/dt, independently."""
+    chances = np.maximum(0.0, 1.0 - lengths / dt)
+    excess, deviation = missed - chances.sum(), math.sqrt((chances * (1.0 - chances)).sum())
+    metrics = {"missed_hits_expected": float(chances.mean())}
+    if deviation > 0.0 or excess == 0.0:
+        metrics["missed_hits_deviation"] = float(excess / deviation) if deviation > 0.0 else 0.0
     return metrics
 
 

@@ -64,7 +64,9 @@ measure: {repeats: 1, reference: {}}
     found = metrics(crossing)
     expected, hits = found["missed_hits_expected"], found["reference_hits"]
     assert 0.2 < expected < 0.6
+    # a contact's own chance spreads less than the mean one would
     assert abs(found["missed_hits"] - expected) < 3 * np.sqrt(expected * (1 - expected) / hits)
+    assert abs(found["missed_hits_deviation"]) < 3
     assert found["extra_hits"] == 0
 
 
