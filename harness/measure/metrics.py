@@ -100,6 +100,18 @@ METRICS: dict[str, Metric] = _table(
     Metric("time_error_95", "s", "error", "95th percentile of the absolute time errors of matched hits"),
     Metric("position_error", "m", "error", "largest distance from the reference before the first divergence"),
     Metric("divergence_time", "s", "error", "first hit that the reference does not share; the duration without one"),
+    Metric(
+        "reference_divergence_time",
+        "s",
+        "error",
+        "first hit that the reference does not share with itself in other units",
+    ),
+    Metric(
+        "reference_position_error",
+        "m",
+        "error",
+        "largest distance of the reference from itself in other units, as long",
+    ),
     Metric("reference_hits", "1", "error", "hits of the reference while the method watched"),
     Metric("reference_error", "s", "error", "largest error found in a checked sample of the reference's hit times"),
     Metric(

@@ -23,13 +23,16 @@ from harness.motion.replayed import contacts_of, error_of
 from harness.runner.key import sources_hash
 from harness.runner.reference_cache import kept
 from harness.runner.setting import build_scene
+from harness.scene.box import Box
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
 # Times at which the positions of two motions are compared, and positions that are held for it in all.
 LOOKS, MOST_POSITIONS = 256, 2**21
+# The other unit of length; no power of two, so that every number is rounded otherwise.
+UNIT = math.pi / 3.0
 
-Fly = Callable[[Point], Trace]
+Fly = Callable[[Point, Scene], Trace]
 
 
 def errors(point: Point, mesh: Mesh | None, trace: Trace, fly: Fly) -> dict[str, float]:
@@ -40,12 +43,11 @@ def errors(point: Point, mesh: Mesh | None, trace: Trace, fly: Fly) -> dict[str,
     point : with a reference
     mesh : that its scene names
     trace : every hit of the run
-    fly : flies another point of the same scene, and keeps every hit
+    fly : flies a point on a scene, and keeps every hit
     """
-    reference = reference_point(point)
     if point.motion.response == "none":
-        return _replayed(point, build_scene(reference, mesh), trace, _key(reference, mesh))
-    return _free_running(point, mesh, trace, lambda: fly(reference), _key(reference, mesh))
+        return _replayed(point, mesh, trace)
+    return _free_running(point, mesh, trace, fly)
 
 
 def reference_point(point: Point) -> Point:
@@ -67,16 +69,16 @@ def _key(reference: Point, mesh: Mesh | None) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def _replayed(point: Point, scene: Scene, trace: Trace, key: str) -> dict[str, float]:
-    duration = point.motion.duration
-    assert point.reference is not None
-    tolerance = point.reference.spec.tolerance
+def _replayed(point: Point, mesh: Mesh | None, trace: Trace) -> dict[str, float]:
+    """Hits matched with the contacts of the reference."""
+    reference, duration = reference_point(point), point.motion.duration
 
     def make() -> dict[str, Any]:
-        contacts = contacts_of(scene, duration, tolerance)
+        scene = build_scene(reference, mesh)
+        contacts = contacts_of(scene, duration, reference.engine.tolerance)
         return asdict(contacts) | {"error": np.array([error_of(scene, contacts)])}
 
-    arrays: dict[str, Any] = dict(kept(key, make))
+    arrays: dict[str, Any] = dict(kept(_key(reference, mesh), make))
     trust = float(arrays.pop("error")[0])
     contacts = Contacts(**(arrays | {"duration": duration}))
     pair = trace.walls < 0
@@ -106,30 +108,57 @@ def _tunnelling(lengths: Floats, dt: float, missed: int) -> dict[str, float]:
     return metrics
 
 
-def _free_running(
-    point: Point, mesh: Mesh | None, trace: Trace, fly: Callable[[], Trace], key: str
-) -> dict[str, float]:
+def _free_running(point: Point, mesh: Mesh | None, trace: Trace, fly: Fly) -> dict[str, float]:
+    """Position errors before the first hit that differs; for the reference the same against itself in other units."""
+    reference = reference_point(point)
     motion, bodies = point.motion, build_scene(point, mesh).bodies
-
-    def make() -> dict[str, Any]:
-        flown = fly()
-        return {"times": flown.times, "bodies": flown.bodies, "walls": flown.walls}
-
-    arrays = kept(key, make)
-    reference = replace(trace, times=arrays["times"], bodies=arrays["bodies"], walls=arrays["walls"])
-    parted = min(
-        motion.duration,
-        first_divergence(
-            len(bodies), reference.times, reference.bodies, reference.walls, trace.times, trace.bodies, trace.walls
-        ),
+    arrays = kept(_key(reference, mesh), lambda: _both(reference, build_scene(reference, mesh), fly))
+    exact, twin = (
+        replace(trace, times=arrays[f"{run}_times"], bodies=arrays[f"{run}_bodies"], walls=arrays[f"{run}_walls"])
+        for run in ("exact", "twin")
     )
+
+    def parted(one: Trace, other: Trace) -> float:
+        when = first_divergence(
+            len(bodies), one.times, one.bodies, one.walls, other.times, other.bodies, other.walls
+        )  # fmt: skip
+        return min(motion.duration, when)
+
+    metrics = {"divergence_time": parted(trace, exact), "reference_divergence_time": parted(twin, exact)}
     looks = min(LOOKS, MOST_POSITIONS // max(1, len(bodies)))
     times = motion.duration * np.arange(1, looks + 1) / looks
-    times = times[(times < parted) & (times <= trace.time)]
-    metrics = {"divergence_time": parted}
+    times = times[(times < min(metrics.values())) & (times <= trace.time)]
     if len(times) and len(bodies):
-        ours, theirs = (
-            positions_at(times, bodies, run, motion.response, motion.restitution) for run in (trace, reference)
+        ours, theirs, again = (
+            positions_at(times, bodies, run, motion.response, motion.restitution) for run in (trace, exact, twin)
         )
         metrics["position_error"] = float(np.linalg.norm(ours - theirs, axis=2).max())
+        metrics["reference_position_error"] = float(np.linalg.norm(again - theirs, axis=2).max())
     return metrics
+
+
+def _both(reference: Point, scene: Scene, fly: Fly) -> dict[str, Any]:
+    """The hits of the reference, and of its twin: the same motion in another unit of length, rounded otherwise."""
+    bodies = scene.bodies
+    twin = replace(
+        scene,
+        bodies=replace(
+            bodies, positions=bodies.positions * UNIT, velocities=bodies.velocities * UNIT, sizes=bodies.sizes * UNIT
+        ),
+        box=Box(scene.box.half * UNIT),
+    )
+    flown = {"exact": fly(reference, scene), "twin": fly(reference, twin)}
+    return {
+        f"{whose}_{name}": getattr(run, name) for whose, run in flown.items() for name in ("times", "bodies", "walls")
+    }
+
+
+def warm_up(scene: Scene) -> None:
+    """Compile what `errors` needs, on a scene of two spheres."""
+    contacts = contacts_of(scene, 1.0, 0.0)
+    match(contacts, contacts.onset, contacts.pairs[contacts.encounter], 1.0)
+    walls = np.full(len(contacts), -1)
+    events = (contacts.onset, contacts.pairs, walls)
+    first_divergence(len(scene.bodies), *events, *events)
+    trace = Trace(*events, 1.0, scene.bodies.positions, scene.bodies.velocities, 0.0, {})
+    positions_at(np.ones(1), scene.bodies, trace, "elastic", 1.0)

@@ -75,13 +75,12 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
     if point.reference is not None and not traced:
-        metrics |= accuracy.errors(point, mesh, outcome.trace or _hits(point, mesh), partial(_hits, mesh=mesh))
+        metrics |= accuracy.errors(point, mesh, outcome.trace or _hits(point, scene), _hits)
     return Result(metrics, plan, outcome.trace if traced else None, flights)
 
 
-def _hits(point: Point, mesh: Mesh | None) -> Trace:
+def _hits(point: Point, scene: Scene) -> Trace:
     """Every hit of a flight of its own."""
-    scene = build_scene(point, mesh)
     trace = _flight(point, scene, plan_of(point, scene), traced=True)().trace
     assert trace is not None
     return trace
@@ -151,6 +150,7 @@ def warm_up() -> None:
         for response in responses:
             plan = make_plan(scene, backend="", algorithm="native", response=response)
             fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
+    accuracy.warm_up(Scene("sphere", None, bodies, box))
 
 
 class _Meeting:

@@ -79,6 +79,8 @@ def test_in_free_flight_a_finer_step_follows_the_reference_longer():
     own = metrics(free, algorithm="predictive")
     assert own["divergence_time"] == 3
     assert own["position_error"] == 0
+    assert 0 < own["reference_position_error"] < 1e-9
+    assert own["reference_divergence_time"] == 3
 
 
 def test_a_reference_is_made_once_for_all_points_of_a_sweep(monkeypatch):
