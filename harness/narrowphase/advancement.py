@@ -242,6 +242,16 @@ def turning(axis: Vector, body: Motion) -> float:
 
 
 @kernel
+def seen_at(a: Motion, b: Motion, time: float) -> tuple[Motion, Motion]:
+    """The bodies as seen from the centre of the first, which moves with it, and with this time as 0."""
+    offset, velocity, rest = minus(place(b, time), place(a, time)), minus(b.velocity, a.velocity), (0.0, 0.0, 0.0)
+    return (
+        Motion(rest, rest, attitude(a, time), a.spin, a.size, a.reach),
+        Motion(offset, velocity, attitude(b, time), b.spin, b.size, b.reach),
+    )
+
+
+@kernel
 def place(body: Motion, time: float) -> Vector:
     """Of the centre, m."""
     return plus(body.position, scaled(body.velocity, time))

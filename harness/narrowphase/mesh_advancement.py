@@ -23,9 +23,9 @@ from harness.narrowphase.advancement import (
     NEVER,
     STALLED,
     Motion,
-    attitude,
     orientation,
     place,
+    seen_at,
     time_of_impact,
 )
 from harness.narrowphase.crossing import DEPTH
@@ -171,16 +171,6 @@ def meeting_of_spheres(a: Motion, b: Motion, begin: float, reach: float) -> tupl
         return 0.0, -np.inf
     half, middle = sqrt(inside / speed), -approach / speed
     return middle - half if outside > 0.0 else 0.0, middle + half
-
-
-@kernel
-def seen_at(a: Motion, b: Motion, time: float) -> tuple[Motion, Motion]:
-    """The bodies as seen from the centre of the first, which moves with it, and with this time as 0."""
-    offset, velocity, rest = minus(place(b, time), place(a, time)), minus(b.velocity, a.velocity), (0.0, 0.0, 0.0)
-    return (
-        Motion(rest, rest, attitude(a, time), a.spin, a.size, a.reach),
-        Motion(offset, velocity, attitude(b, time), b.spin, b.size, b.reach),
-    )
 
 
 @kernel
