@@ -91,7 +91,8 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[]
     motion = point.motion
     answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
     if point.engine.algorithm == "predictive":
-        return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
+        tolerance = point.engine.tolerance
+        return partial(fly_predicted, scene, plan, duration=motion.duration, tolerance=tolerance, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
         backend.load(scene)
@@ -151,6 +152,13 @@ def warm_up() -> None:
             plan = make_plan(scene, backend="", algorithm="native", response=response)
             fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
     accuracy.warm_up(Scene("sphere", None, bodies, box))
+    scene = Scene("hull", mesh, bodies, box)
+    fly_predicted(
+        scene,
+        make_plan(scene, backend="fcl", algorithm="predictive", response="reflect"),
+        duration=0.3,
+        response="reflect",
+    )
 
 
 class _Meeting:
