@@ -27,7 +27,9 @@ FEW_PIECES = 5e6
 SAME_MOMENT = 64.0
 
 
-def sphere_contacts(bodies: Bodies, box: Box, duration: float, windows: int | None = None) -> Contacts:
+def sphere_contacts(
+    bodies: Bodies, box: Box, duration: float, windows: int | None = None, margin: float = 0.0
+) -> Contacts:
     """All contacts of the bounding spheres on their folded paths.
 
     Parameters
@@ -41,19 +43,20 @@ def sphere_contacts(bodies: Bodies, box: Box, duration: float, windows: int | No
     windows : int
         Into how many parts the duration is cut; in each, only pairs near one another are looked at. Chosen where left
         out; the answer is the same.
+    margin : float
+        By how much of its radius each sphere is taken larger where it meets another, though not where it meets a wall.
 
     Returns
     -------
     Contacts
         Of spheres: each encounter is a contact.
     """
-    flight = Flight(bodies, box, folded=True, turning=False)
-    room = box.half - bodies.radii[:, None]
-    paths = _Paths(bodies.positions, flight.velocities, room, bodies.radii)
-    cuts = np.linspace(0.0, duration, (windows or _windows(bodies, room, duration)) + 1)
+    flight, radii = Flight(bodies, box, folded=True, turning=False), bodies.radii * (1.0 + margin)
+    paths = Paths(bodies, box)
+    cuts = np.linspace(0.0, duration, (windows or _windows(bodies, paths.room, duration)) + 1)
     parts = [
-        paths.touching(pairs, begin, end)
-        for begin, end, pairs in _near(bodies, box, flight, cuts)
+        paths.touching(pairs, radii, begin, end)
+        for begin, end, pairs in _near(bodies, radii, box, flight, cuts)
         if len(pairs)
     ]  # fmt: skip
     pairs = np.concatenate([part[0] for part in parts]) if parts else np.empty((0, 2), np.int64)
@@ -73,7 +76,9 @@ def _windows(bodies: Bodies, room: Floats, duration: float) -> int:
     return max(1, int(np.ceil(np.median(speeds) * duration / bodies.sizes.mean())))
 
 
-def _near(bodies: Bodies, box: Box, flight: Flight, cuts: Floats) -> Iterator[tuple[float, float, Pairs]]:
+def _near(
+    bodies: Bodies, radii: Floats, box: Box, flight: Flight, cuts: Floats
+) -> Iterator[tuple[float, float, Pairs]]:
     """The pairs that can touch between two cuts, and those cuts.
 
     A folded path never strays further than its speed allows from where it is in the middle of the window.
@@ -83,32 +88,56 @@ def _near(bodies: Bodies, box: Box, flight: Flight, cuts: Floats) -> Iterator[tu
         yield cuts[0], cuts[1], np.column_stack([first, second]).astype(np.int64)
         return
     reach = np.linalg.norm(bodies.velocities, axis=1) * (cuts[1] - cuts[0]) / 2
-    grid = HierarchicalGrid((bodies.radii + reach) * (1.0 + 1e-9), box)
+    grid = HierarchicalGrid((radii + reach) * (1.0 + 1e-9), box)
     for begin, end in pairwise(cuts.tolist()):
         flight.move_to((begin + end) / 2)
         yield begin, end, grid.close_pairs(flight.positions)
 
 
-class _Paths:
-    """All folded paths, ready to be held against each other pair by pair."""
+class Paths:
+    """All folded paths, ready to be held against each other pair by pair.
 
-    def __init__(self, origins: Floats, velocities: Floats, room: Floats, radii: Floats) -> None:
+    Attributes
+    ----------
+    room : (n, 3) float array, m: how far from the middle each centre can come
+    """
+
+    def __init__(self, bodies: Bodies, box: Box) -> None:
+        velocities = Flight(bodies, box, folded=True, turning=False).velocities
+        room = box.half - bodies.radii[:, None]
         free = room > 0.0  # a body as large as the box stays in the middle
-        self._origins, self._velocities = np.where(free, origins, 0.0), np.where(free, velocities, 0.0)
-        self._room, self._radii = np.where(free, room, 0.0), radii
+        self._origins, self._velocities = np.where(free, bodies.positions, 0.0), np.where(free, velocities, 0.0)
+        self.room = np.where(free, room, 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ahead = np.where(self._velocities > 0.0, self._room, -self._room)
+            ahead = np.where(self._velocities > 0.0, self.room, -self.room)
             first = (ahead - self._origins) / self._velocities
             self._first = np.where(self._velocities == 0.0, inf, first)
-            self._period = np.where(self._velocities == 0.0, inf, 2.0 * self._room / np.abs(self._velocities))
+            self._period = np.where(self._velocities == 0.0, inf, 2.0 * self.room / np.abs(self._velocities))
 
-    def touching(self, pairs: Pairs, begin: float, end: float) -> tuple[Pairs, Floats, Floats]:
+    def pieces(self, i: int, j: int, begin: float, end: float) -> Iterator[tuple[float, float, Floats, Floats]]:
+        """The straight pieces of a pair's motion in a window.
+
+        Yields
+        ------
+        From when until when (s), and of both bodies the places at its beginning (2, 3) m and velocities (2, 3) m/s.
+        """
+        now, pair = begin, np.array([i, j])
+        while True:
+            places, velocities, later = _straight(
+                pair, now, self._origins, self._velocities, self.room, self._first, self._period
+            )
+            yield now, min(later, end), places, velocities
+            if later >= end:
+                return
+            now = later
+
+    def touching(self, pairs: Pairs, radii: Floats, begin: float, end: float) -> tuple[Pairs, Floats, Floats]:
         """The pairs (k, 2), and from when until when they touch within [begin, end]; a pair as often as it does."""
         size = 4 * len(pairs) + 64
         while True:
             which, since, until = np.empty(size, np.int64), np.empty(size), np.empty(size)
             found = _touching(
-                pairs, begin, end, self._origins, self._velocities, self._room, self._first, self._period, self._radii,
+                pairs, begin, end, self._origins, self._velocities, self.room, self._first, self._period, radii,
                 which, since, until,
             )  # fmt: skip
             if found <= size:
@@ -179,6 +208,23 @@ def _touching(
                     folds[side] = _fold_time(first[body, axis], period[body, axis], legs[side] + 1)
             now = later
     return count
+
+
+@kernel
+def _straight(
+    pair: Ints, time: float, origins: Floats, velocities: Floats, room: Floats, first: Floats, period: Floats
+) -> tuple[Floats, Floats, float]:
+    """Places (2, 3) and velocities (2, 3) of a pair at a time, and when the next of them folds."""
+    places, speeds, later = np.empty((2, 3)), np.empty((2, 3)), inf
+    for side in range(2):
+        body = pair[side]
+        for axis in range(3):
+            leg = _leg(first[body, axis], period[body, axis], time)
+            places[side, axis], speeds[side, axis] = _place(
+                origins, velocities, room, first, period, body, axis, leg, time
+            )
+            later = min(later, _fold_time(first[body, axis], period[body, axis], leg + 1))
+    return places, speeds, later
 
 
 @kernel

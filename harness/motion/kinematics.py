@@ -58,7 +58,7 @@ class Flight:
         else:
             _fly(self._origins, self.velocities, self._since, time, self.positions)
         if self._turning:
-            _turn(self._start_quaternions, self._spins, time, self.quaternions)
+            turn(self._start_quaternions, self._spins, time, self.quaternions)
 
     def redirect(self, changed: Flags, time: float) -> None:
         """Start the bodies marked in `changed` (n,) afresh from where they are at `time`, with their new velocities."""
@@ -98,7 +98,8 @@ def _restart(changed: Flags, positions: Floats, time: float, origins: Floats, si
 
 
 @kernel
-def _turn(start: Floats, spins: Floats, time: float, quaternions: Floats) -> None:
+def turn(start: Floats, spins: Floats, time: float, quaternions: Floats) -> None:
+    """Orientations (n, 4) at a time, exp(w t) q of those at time 0, written into `quaternions`."""
     for i in range(len(start)):
         x, y, z = spins[i]
         rate = sqrt(x * x + y * y + z * z)

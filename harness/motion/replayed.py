@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from harness.measure.contacts import Contacts
 from harness.motion.encounters import sphere_contacts
+from harness.motion.independent import largest_bracket
 from harness.motion.precise import largest_error
+from harness.motion.solid_contacts import solid_contacts
 from harness.scene.scene import Scene
 
 
@@ -15,12 +17,19 @@ def contacts_of(scene: Scene, duration: float, tolerance: float) -> Contacts:
     ----------
     scene : of the shape that is asked about
     duration : s
-    tolerance : of size; surfaces of hulls and meshes that are nearer touch. No effect on spheres, whose times are
-        solved in closed form.
+    tolerance : of the mean size of a pair; hulls and surfaces that are nearer touch. No effect on spheres, whose
+        times are solved in closed form.
     """
-    return sphere_contacts(scene.bodies, scene.box, duration)
+    if scene.shape == "sphere":
+        return sphere_contacts(scene.bodies, scene.box, duration)
+    return solid_contacts(scene, duration, tolerance)
 
 
 def error_of(scene: Scene, contacts: Contacts) -> float:
-    """The largest error (s) found among the onsets of a sample of contacts, in high-precision arithmetic."""
-    return largest_error(scene.bodies, scene.box, contacts)
+    """The largest error (s) found among the onsets of a sample of contacts.
+
+    Of spheres in high-precision arithmetic, of hulls and surfaces by what FCL sees around them.
+    """
+    if scene.shape == "sphere":
+        return largest_error(scene.bodies, scene.box, contacts)
+    return largest_bracket(scene, contacts)

@@ -14,9 +14,11 @@ from harness.report.drawing import Line, Panel, draw_panels
 from harness.report.figures import Figure, Key
 from harness.report.pages import ExperimentPage
 from harness.report.quantity import Scale, exponent_text, leaf_text, number, power_of_ten, quantity, scale
-from harness.report.table import Column, Entry, Table, counted, plain, words
+from harness.report.series import Arrangement, Cell
+from harness.report.table import Column, Entry, Table, counted, measured, plain, words
+from harness.report.tables import place_of
 from harness.report.tradeoffs import MOST_WRONG, TARGETS, Method, Setting, Tradeoff, tradeoffs
-from harness.report.words import scene_text
+from harness.report.words import metric_title, metric_unit, scene_text
 
 _MOST_SCENES = 6
 _WRONG = f"{100 * MOST_WRONG:g} %"
@@ -59,28 +61,43 @@ class AccuracySection:
         """Who is fastest at which error, orders of convergence, and every setting with its hits."""
         found = [fastest(tradeoff) for tradeoff in self.curves[:_MOST_SCENES]]
         found += [table for table in (orders(self.tradeoffs),) if table is not None]
-        return [*found, hits(self.tradeoffs)]
+        found += [hits(self.tradeoffs)] if self.tradeoffs else []
+        return [*found, *([followed(self.page.arrangement)] if self.free else [])]
+
+    @property
+    def free(self) -> bool:
+        """Whether bodies answer hits, so that each method flies its own motion."""
+        return any(cell.summary("divergence_time") for cell in self.page.arrangement.cells)
 
     @cached_property
     def trust(self) -> Markup:
         """How far its reference is right."""
-        cells = [setting.cell for tradeoff in self.tradeoffs for _, setting in tradeoff.settings]
-        worst = max((value for cell in cells if math.isfinite(value := cell.median("reference_error"))), default=None)
-        most = max((value for cell in cells if math.isfinite(value := cell.median("reference_hits"))), default=0)
-        if worst is None:
-            return Markup("")
-        return Markup(
-            "Of the reference's {} hits a sample was checked: its times are right to <strong>{}</strong>."
-        ).format(number(most), _time(worst))
+        cells, said = self.page.arrangement.cells, []
+        if (worst := _largest(cells, "reference_error")) is not None:
+            said.append(
+                Markup(
+                    "Of the reference's {} hits a sample was checked: its times are right to <strong>{}</strong>."
+                ).format(number(_largest(cells, "reference_hits")), _time(worst))
+            )
+        if (agrees := _largest(cells, "reference_divergence_time")) is not None:
+            said.append(
+                Markup(
+                    "Flown again in another unit of length, and so rounded otherwise, the reference shares its hits "
+                )
+                + Markup("for <strong>{}</strong>").format(_time(agrees))
+            )
+            apart = _largest(cells, "reference_position_error")
+            said[-1] += Markup(", and its places to {} m.").format(number(apart)) if apart is not None else Markup(".")
+        return Markup(" ").join(said)
 
 
 def sections(pages: Sequence[ExperimentPage]) -> list[AccuracySection]:
-    """The experiments that measure the times of hits against a reference."""
+    """The experiments that measure errors against a reference."""
     found: list[AccuracySection] = []
     for page in pages:
-        tradeoff = tradeoffs(page.record, page.arrangement)
-        if tradeoff:
-            found.append(AccuracySection(page, f"scene{len(found)}", tuple(tradeoff)))
+        section = AccuracySection(page, f"scene{len(found)}", tuple(tradeoffs(page.record, page.arrangement)))
+        if section.tradeoffs or section.free:
+            found.append(section)
     return sorted(found, key=lambda section: not section.curves)
 
 
@@ -240,6 +257,40 @@ def hits(found: Sequence[Tradeoff]) -> Table:
     if expected:
         note += " By the tunnelling formula, a contact of length τ is missed with the probability max(0, 1 − τ/dt)."
     return Table("Every setting, and the hits it saw", note, tuple(columns), tuple(rows))
+
+
+def followed(arrangement: Arrangement) -> Table:
+    """In free flight: until when every method shares the reference's hits, how far it is off, and what it conserves."""
+    shown = [name for name in _FREE if any(cell.summary(name) for cell in arrangement.cells)]
+    units = {name: scale([cell.median(name) for cell in arrangement.cells], metric_unit(name)) for name in shown}
+    rows = []
+    for series in arrangement.series:
+        for cell, x in zip(series.cells, series.x, strict=True):
+            row = [words(place_of(arrangement, series, x), series.style)]
+            rows.append(tuple(row + [measured(cell, name, units[name]) for name in shown]))
+    titles = [metric_title(name) for name in shown]
+    columns = [
+        Column(f"{title[:1].upper()}{title[1:]}", units[name].symbol)
+        for name, title in zip(shown, titles, strict=True)
+    ]  # fmt: skip
+    note = (
+        "Bodies answer their hits, so each method flies its own motion. It is compared with the reference up to the "
+        "first hit of any body that differs; places at up to 256 times until then. After that chaos leaves only what "
+        "is conserved, and how often bodies hit."
+    )
+    return Table(
+        "How long the exact motion is followed", note, (Column("Method", numeric=False), *columns), tuple(rows)
+    )
+
+
+_FREE = (
+    "run_seconds", "divergence_time", "position_error", "energy_drift", "momentum_drift", "max_penetration",
+    "collision_rate",
+)  # fmt: skip
+
+
+def _largest(cells: Sequence[Cell], metric: str) -> float | None:
+    return max((value for cell in cells if math.isfinite(value := cell.median(metric))), default=None)
 
 
 def _line(method: Method, unit: Scale) -> Line:

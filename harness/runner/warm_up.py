@@ -5,7 +5,7 @@ Every piece is flown once a process, with two tetrahedra that meet. A new pipeli
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
@@ -24,6 +24,7 @@ from harness.narrowphase.hull_pairs import HullPairs
 from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.penetration import Penetration
 from harness.narrowphase.placement import Places
+from harness.runner import accuracy
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import hull_of
@@ -46,7 +47,9 @@ def warm_up(point: Point) -> bool:
     bool
         Whether there was anything left to do.
     """
-    wanted = pieces(point.engine.algorithm, point.scene.shape, forced=bool(point.engine.stages))
+    wanted = [*pieces(point.engine.algorithm, point.scene.shape, forced=bool(point.engine.stages))]
+    if point.reference is not None:
+        wanted += [*pieces("predictive", point.reference.shape), _REFERENCES[point.reference.shape]]
     left = [fly for fly in wanted if fly not in _flown]
     for fly in left:
         fly()
@@ -140,6 +143,13 @@ _PIECES = (
     _Piece(_hulls_predicted, ("predictive",), _HULLS),
     _Piece(_meshes_predicted, ("predictive",), _MESHES),
 )
+
+# What holds a run's hits against a reference of each shape.
+_REFERENCES: Mapping[Shape, Callable[[], None]] = {
+    "sphere": lambda: accuracy.warm_up(_two("sphere")),
+    "hull": lambda: accuracy.warm_up(_two("hull")),
+    "mesh": lambda: accuracy.warm_up(_two("mesh")),
+}
 
 _PAIR: Pairs = np.array([[0, 1]])
 

@@ -1,0 +1,53 @@
+"""How far the computed contacts of hulls and surfaces are right: a sample of them, put to FCL around the onset.
+
+FCL tells whether two bodies touch at a moment, by other means than those that found the contact. The error of an onset
+is bounded by the least time before which FCL sees the bodies apart and after which it sees them touch.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.arrays import Floats
+from harness.measure.contacts import Contacts
+from harness.motion.kinematics import Flight
+from harness.scene.scene import Scene
+
+SAMPLE = 64
+FIRST, FACTOR = 1e-14, 4.0  # of the duration
+
+
+def largest_bracket(scene: Scene, contacts: Contacts) -> float:
+    """The largest such time (s) over a sample of contacts, at most the contact's length; 0 without any contact."""
+    import fcl  # only where a reference is made
+
+    from harness.narrowphase.fcl_objects import FclObjects
+
+    bodies = FclObjects(scene)
+    flight = Flight(scene.bodies, scene.box, folded=True, turning=True)
+    request, result = fcl.CollisionRequest(), fcl.CollisionResult()
+
+    def touching(i: int, j: int, time: float) -> bool:
+        flight.move_to(time)
+        bodies.place(flight.positions, flight.quaternions, np.array([i, j]))
+        return bool(fcl.collide(bodies.objects[i], bodies.objects[j], request, result))
+
+    worst = 0.0
+    for contact in _chosen(contacts.onset):
+        i, j = contacts.pairs[contacts.encounter[contact]].tolist()
+        onset, length = float(contacts.onset[contact]), float(contacts.lengths[contact])
+        wait = FIRST * contacts.duration
+        while wait < length and not (touching(i, j, onset + wait) and not touching(i, j, onset - wait)):
+            wait *= FACTOR
+        worst = max(worst, min(wait, length))
+    return worst
+
+
+def _chosen(onset: Floats) -> list[int]:
+    """Contacts that begin after time 0, spread over the duration."""
+    begins = np.flatnonzero(onset > 0.0)
+    begins = begins[np.argsort(onset[begins], kind="stable")]
+    if not len(begins):
+        return []
+    chosen: list[int] = begins[np.unique(np.linspace(0, len(begins) - 1, SAMPLE).astype(np.int64))].tolist()
+    return chosen
