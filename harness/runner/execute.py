@@ -96,7 +96,8 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool, slower: float 
     motion = point.motion
     answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
     if point.engine.algorithm == "predictive":
-        return partial(fly_predicted, scene, plan, duration=motion.duration * slower, **answers)
+        tolerance = point.engine.tolerance
+        return partial(fly_predicted, scene, plan, duration=motion.duration * slower, tolerance=tolerance, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
         backend.load(scene)
@@ -168,6 +169,13 @@ def warm_up() -> None:
         for response in responses:
             plan = make_plan(scene, backend="", algorithm="native", response=response)
             fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
+    scene = Scene("hull", mesh, bodies, box)
+    fly_predicted(
+        scene,
+        make_plan(scene, backend="fcl", algorithm="predictive", response="reflect"),
+        duration=0.3,
+        response="reflect",
+    )
 
 
 class _Meeting:
