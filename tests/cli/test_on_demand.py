@@ -20,12 +20,12 @@ expect:
 )
 REFUSED = """
 title: Refused
-scene: {shape: sphere, count: 9, box: [2, 2, 2]}
-sweep: {count: [2, 9]}
+scene: {shape: sphere, count: 23, box: [2.5, 2.5, 2.5]}
+sweep: {count: [2, 23]}
 motion: {duration: 0.1}
 measure: {repeats: 1, timeout: 20}
 expect:
-  - {metric: rejected, where: {count: 9}, equals: 1}
+  - {metric: rejected, where: {count: 23}, equals: 1}
   - {metric: escaped, where: {count: 2}, equals: 0}
 """
 
@@ -63,6 +63,6 @@ def test_a_metric_is_made_where_an_experiment_names_it_also_of_points_that_were_
 
 def test_a_refusal_that_nobody_expects_fails_the_sweep(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "refused.yaml").write_text(REFUSED.replace("where: {count: 9}", "where: {count: 2}"))
+    (tmp_path / "refused.yaml").write_text(REFUSED.replace("where: {count: 23}", "where: {count: 2}"))
     assert main(["sweep", "refused.yaml", "--quiet"]) == 1
     assert "rejected at count=2 is 0 (expected exactly 1)" in capsys.readouterr().out
