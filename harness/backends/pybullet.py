@@ -9,7 +9,7 @@ import numpy as np
 import pybullet
 
 from harness.arrays import Floats, Pairs
-from harness.narrowphase.units import unit_of
+from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
 from harness.scene.scene import Scene, Shape
 
@@ -24,6 +24,8 @@ class PyBullet:
     name = "pybullet"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
     approximations = {"mesh": "pybullet replaces each mesh by its convex hull: it never tests two concave meshes"}  # noqa: RUF012
+    units = UNITS
+    precision = "double; hull vertices rounded to 1e-4 of the extent"
 
     # Against its own hulls, read back: 1e-15 for bodies as they fly, but two vertices that overlap point to point are
     # missed, of pumpkins down to 1e-7 deep, of cubes to 3e-6.

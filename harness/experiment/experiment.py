@@ -13,16 +13,31 @@ from harness.experiment.criterion import Criterion
 from harness.experiment.document import Document
 from harness.experiment.leaves import identity, plain
 from harness.experiment.presentation import Published, ReportSpec
-from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, SceneSpec
+from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, ReferenceSpec, SceneSpec, Shape
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the errors of a point are measured against: such a run of the same motion.
+
+    Parameters
+    ----------
+    spec : as the experiment declares it
+    shape : the most exact of all shapes that the experiment has, the others being approximations of it
+    """
+
+    spec: ReferenceSpec
+    shape: Shape
 
 
 @dataclass(frozen=True)
 class Point:
-    """One combination of values, fully resolved: what a run is to do."""
+    """One combination of values, fully resolved: what a run is to do, and what it is measured against."""
 
     scene: SceneSpec
     motion: MotionSpec
     engine: EngineSpec
+    reference: Reference | None = None
 
     @property
     def parameters(self) -> dict[str, Any]:

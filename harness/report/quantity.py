@@ -76,10 +76,15 @@ def number(value: float | None) -> str:
     size = abs(value)
     if size >= 1e15 or 0.0 < size < 1e-4:
         mantissa, exponent = f"{value:.2e}".split("e")
-        return f"{_signed(mantissa)}{THIN}×{THIN}10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+        return f"{_signed(mantissa)}{THIN}×{THIN}{power_of_ten(int(exponent))}"
     if float(value).is_integer():
         return _signed(f"{int(value):,}".replace(",", THIN))
     return _signed(f"{value:,.{_decimals(value)}f}".replace(",", THIN))
+
+
+def power_of_ten(exponent: int) -> str:
+    """10⁻⁴ for -4."""
+    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"
 
 
 def plural(count: int, noun: str, nouns: str | None = None) -> str:

@@ -19,6 +19,7 @@ from markupsafe import Markup
 
 from harness.errors import InputError
 from harness.report import palette
+from harness.report.accuracy import AccuracySection, sections
 from harness.report.comparison import Comparison
 from harness.report.figures import Figure
 from harness.report.pages import (
@@ -40,8 +41,8 @@ from harness.report.sweeps import summary as comparison_summary
 from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
 from harness.store.tables import conditions, controls, experiments, machines, runs
 
-SWEEPS, STABILITY = "sweeps.html", "stability.html"
-TITLES = {SWEEPS: "Sweeps compared", STABILITY: "Stability"}
+SWEEPS, STABILITY, ACCURACY = "sweeps.html", "stability.html", "accuracy.html"
+TITLES = {ACCURACY: "Error against run time", STABILITY: "Stability", SWEEPS: "Sweeps compared"}
 
 
 @dataclass(frozen=True)
@@ -142,13 +143,15 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     # claims of the cases of stability stand in their matrix, where they say how far a method falls short
     claims = any(page.record.claims for page in pages if not is_case(page))
     compared = newest_comparison(database)
-    stability = matrix(pages)
-    present = ((STABILITY, stability is not None), (SWEEPS, compared is not None))
+    accuracy, stability = sections(pages), matrix(pages)
+    present = ((ACCURACY, bool(accuracy)), (STABILITY, stability is not None), (SWEEPS, compared is not None))
     further = [file for file, there in present if there]
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
         yield from _experiment(environment, page, elsewhere, claims, further)
-    yield "index.html", _index(environment, pages, records, further, machines(database), stability)
+    yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
+    if accuracy:
+        yield from _accuracy(environment, accuracy, claims, further, records)
     if stability is not None:
         yield STABILITY, _stability(environment, stability, pages, claims, further)
     if compared is not None:
@@ -239,6 +242,7 @@ def _index(
     records: Sequence[ExperimentRecord],
     further: Sequence[str],
     machines: Mapping[str, Mapping[str, Any]],
+    accuracy: Sequence[AccuracySection],
     stability: Matrix | None,
 ) -> str:
     listed = []
@@ -269,6 +273,7 @@ def _index(
         claims=_by_source(claims),
         machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
         totals=totals,
+        decisions=[(f"{ACCURACY}#{found.identity}", said) for found in accuracy for said in found.decisions],
         footer=_footer(records),
     )
 
@@ -295,6 +300,28 @@ def _stability(
     )
 
 
+def _accuracy(
+    environment: Environment,
+    found: Sequence[AccuracySection],
+    claims: bool,
+    further: Sequence[str],
+    records: Sequence[ExperimentRecord],
+) -> Iterator[tuple[str, str]]:
+    yield (
+        ACCURACY,
+        environment.get_template("accuracy.html.j2").render(
+            title=f"{TITLES[ACCURACY]} · harness",
+            navigation=_navigation("", claims, further, Link(TITLES[ACCURACY], ACCURACY, here=True)),
+            sections=found,
+            decisions=[said for section in found for said in section.decisions],
+            footer=_footer(records),
+        ),
+    )
+    for section in found:
+        for figure in section.figures:
+            yield figure.file, figure.document
+
+
 def _compared(
     environment: Environment,
     found: Comparison,
@@ -303,7 +330,7 @@ def _compared(
     records: Sequence[ExperimentRecord],
 ) -> str:
     return environment.get_template("sweeps.html.j2").render(
-        title="Sweeps compared · harness",
+        title=f"{TITLES[SWEEPS]} · harness",
         navigation=_navigation("", claims, further, Link(TITLES[SWEEPS], SWEEPS, here=True)),
         sentences=comparison_summary(found),
         verdicts=found.verdicts,

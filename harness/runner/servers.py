@@ -130,7 +130,7 @@ class _Server:
         """
         importing = f'importing backend "{self._backend}"'
         try:
-            self._channel.recv()  # warm: compiling takes as long as it takes
+            self._channel.recv()  # started, which takes as long as it takes
             if not self._channel.poll(timeout):
                 return Report("timeout", f"{importing} did not end within {timeout:g} s")
             self._channel.recv()

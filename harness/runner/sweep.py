@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
+from harness.backends.registry import missing
 from harness.errors import InputError
 from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
@@ -48,6 +49,7 @@ class Summary:
     seconds : by the same names, the elapsed time of these runs
     broken : experiment and statement of every expectation that fails
     refused : runs that were rejected, as their experiment expects
+    lacking : of every backend that is not installed, and whose points were passed over, why
     """
 
     kept: Counter[str] = field(default_factory=Counter)
@@ -57,6 +59,7 @@ class Summary:
     seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     broken: list[tuple[str, str]] = field(default_factory=list)
     refused: int = 0
+    lacking: list[str] = field(default_factory=list)
 
     @property
     def failed(self) -> bool:
@@ -79,12 +82,17 @@ class Watcher(Protocol):
 
 
 class Work(NamedTuple):
-    """What a sweep would do: the key of each point by its id, those wanted, the runs, and how long they may take."""
+    """What a sweep would do: the key of each point by its id, those wanted, the runs, how long they may take.
+
+    Points whose backend is an extra that is not installed are passed over, and said in `lacking`: of several backends
+    those that there are can be measured, and the next sweep after an installation does the rest.
+    """
 
     keys: dict[int, str]
     wanted: set[str]
     schedule: Schedule
     estimate: Estimate
+    lacking: list[str]
 
 
 def work_of(
@@ -112,6 +120,8 @@ def work_of(
     keys: dict[int, str] = {}
     parameters: dict[str, dict[str, Any]] = {}
     asked: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
+    backends = sorted({point.engine.backend for experiment in experiments for point in experiment.points})
+    lacking = {name: why for name in backends if (why := missing(name)) is not None}
     for experiment in experiments:
         for point in experiment.points:
             mesh = mesh_of(experiment, point, meshes)
@@ -121,6 +131,7 @@ def work_of(
     wanted = {key for key, found in parameters.items() if choice.wants(found)}
     if choice.only and parameters and not wanted:
         raise InputError("--only: no point of these experiments has these values")
+    wanted = {key for key in wanted if parameters[key]["backend"] not in lacking}
     if history is None:
         status: dict[str, dict[int, str]] = {key: {} for key in parameters}
         controlled: set[tuple[str, int]] = set()
@@ -132,7 +143,8 @@ def work_of(
     found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=choice.retry)
     jobs = [job if job.control else replace(job, asked=asked[job.key]) for job in found.jobs]
     found = found._replace(jobs=jobs)
-    return Work(keys, wanted, found, Estimate(history.durations() if history else {}, parameters))
+    estimate = Estimate(history.durations() if history else {}, parameters)
+    return Work(keys, wanted, found, estimate, list(lacking.values()))
 
 
 def sweep(
@@ -167,7 +179,7 @@ def sweep(
     machine["fingerprint"] = fingerprint(machine)
     number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions())
     listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
-    summary = Summary(work.schedule.kept)
+    summary = Summary(work.schedule.kept, lacking=work.lacking)
     watch.begin(work.schedule.jobs, work.estimate)
     with executor or Alone() as doing:
         for done in doing.run(work.schedule.jobs, meshes, watch.before):

@@ -77,6 +77,11 @@ class History:
             )
             return [number for (number,) in rows]
 
+    def compared(self) -> set[str]:
+        """The keys of all comparisons of backends."""
+        with told(self._path):
+            return {key for (key,) in self._connection.execute("SELECT DISTINCT key FROM comparison")}
+
     def durations(self) -> dict[str, float]:
         """Mean elapsed seconds of a run, by the key of its point, and by its parameters as sorted JSON text.
 
