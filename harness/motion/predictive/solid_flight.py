@@ -1,7 +1,8 @@
 """The loop for bodies of any shape: bounding spheres open windows, and what happens inside is searched when due.
 
 It is the loop of spheres with one kind of event more, the search. A body holds all its windows, not the earliest one
-alone, as a search that has been paid for should not be asked for again.
+alone, as a search that has been paid for should not be asked for again. The loop itself is a strict kernel, since those
+of the narrow phase, which it calls, are compiled in its image: they need memory of their own, and exact rounding.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
-from harness.kernel import loop, step
+from harness.kernel import kernel, step
 from harness.motion.predictive import tournament, windows
 from harness.motion.predictive.burst import patience
 from harness.motion.predictive.cells import ALL, insert, remove
@@ -55,6 +56,7 @@ from harness.motion.predictive.windows import (
     APART,
     COUNT,
     DUE,
+    NEAR,
     NOBODY,
     OTHER,
     OTHER_HITS,
@@ -79,7 +81,7 @@ class SolidWorld(NamedTuple):
     windows: Windows
 
 
-@loop
+@kernel
 def fly_solids(solid: SolidWorld, until: float, budget: int) -> int:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
     world = solid.world
@@ -104,7 +106,11 @@ def fly_solids(solid: SolidWorld, until: float, budget: int) -> int:
             return FULL
         clock[NOW] = now
         counts[POPS] += 1
-        task, other, axis, step = happen(solid, k, now)
+        task, other, axis, step = SAME, NOBODY, ALL, 0
+        if world.spheres.marks[k, KIND] == SEARCH:
+            search(solid, k, now)
+        else:
+            task, other, axis, step = happen(solid, k, now)
         for turn in range(2):
             who = k if turn == 0 else other
             if who >= 0:
@@ -114,9 +120,22 @@ def fly_solids(solid: SolidWorld, until: float, budget: int) -> int:
                 tournament.replay(agenda, world.spheres.marks, who)
 
 
+@kernel
+def search(solid: SolidWorld, k: int, now: float) -> None:
+    """Carry out the search that body k's event is."""
+    held = int(solid.windows.held[k])
+    if held < 0:
+        search_wall(solid.world, solid.body, solid.windows, k, -1 - held, now)
+    elif holds(solid.windows, solid.world.spheres.marks, held):
+        search_pair(solid.world, solid.body, solid.windows, k, held, now)
+    else:
+        windows.remove(solid.windows, k, held)
+        solid.world.tally.counts[STALE] += 1
+
+
 @step
 def happen(solid: SolidWorld, k: int, now: float) -> tuple[int, int, int, int]:
-    """Carry out body k's event.
+    """Carry out body k's event, other than a search.
 
     Returns what it must do then, who else must do so (-1: nobody), and the axis and direction of the new cells to look
     at (ALL: all).
@@ -124,19 +143,13 @@ def happen(solid: SolidWorld, k: int, now: float) -> tuple[int, int, int, int]:
     world = solid.world
     marks = world.spheres.marks
     kind = int(marks[k, KIND])
-    held = int(solid.windows.held[k])
-    if kind == SEARCH and held < 0:
-        search_wall(world, solid.body, solid.windows, k, -1 - held, now)
+    if kind == PAIR:
+        held = int(solid.windows.held[k])
+        if holds(solid.windows, marks, held):
+            return meet(solid, k, held, now)
+        windows.remove(solid.windows, k, held)
+        world.tally.counts[STALE] += 1
         return SAME, NOBODY, ALL, 0
-    if kind in (SEARCH, PAIR):
-        if not holds(solid.windows, marks, held):
-            windows.remove(solid.windows, k, held)
-            world.tally.counts[STALE] += 1
-            return SAME, NOBODY, ALL, 0
-        if kind == SEARCH:
-            search_pair(world, solid.body, solid.windows, k, held, now)
-            return SAME, NOBODY, ALL, 0
-        return meet(solid, k, held, now)
     if kind >= WALL and kind < CROSSING:
         return meet_wall(solid, k, kind - WALL, now), NOBODY, ALL, 0
     if kind >= CROSSING and kind < RENEWAL:
@@ -254,7 +267,7 @@ def were_apart(solid: SolidWorld, k: int, p: int, before: int, theirs: int) -> b
     if before < 0:
         return False
     stood = open_.marks[before, OTHER_HITS] == (marks[k, HITS] - 1 if before == theirs else marks[p, HITS])
-    return bool(stood and open_.marks[before, PHASE] in (APART, DUE))
+    return bool(stood and open_.marks[before, PHASE] in (APART, NEAR, DUE))
 
 
 @step

@@ -16,7 +16,9 @@ from harness.arrays import Floats, Ints
 from harness.kernel import kernel, step, strict_step
 from harness.motion.predictive.state import EPOCH, EPOCH_REST, TIME, VX, X
 from harness.narrowphase.advancement import Motion
-from harness.narrowphase.support import SupportMap, support_map
+from harness.narrowphase.mesh_advancement import MeshShape
+from harness.narrowphase.support import support_map
+from harness.narrowphase.triangle_tree import triangle_tree
 from harness.narrowphase.units import unit_of
 from harness.narrowphase.vectors import Vector
 from harness.scene.bodies import Bodies
@@ -41,8 +43,21 @@ class Form:
     def __init__(self, scene: Scene) -> None:
         if scene.mesh is None or scene.shape == "sphere":
             raise ValueError("a sphere has no surface to search")
-        self.hull = support_map(scene.mesh.hull.vertices)
+        mesh, hull = scene.mesh, scene.mesh.hull
+        self.concave = needs_its_surface(scene)
+        faces = mesh.faces if self.concave else mesh.faces[:1]
+        tree = triangle_tree(mesh.vertices, faces)
+        self.shape = MeshShape(support_map(hull.vertices), tree, 0.5)
         self.inradius = scene.mesh.hull.inradius
+
+
+def needs_its_surface(scene: Scene) -> bool:
+    """Whether bodies may touch otherwise than their hulls do.
+
+    Convex meshes do not, unless one is wholly inside another, which equal bodies cannot be.
+    """
+    convex = scene.mesh is not None and scene.mesh.convex and np.ptp(scene.bodies.sizes) == 0.0
+    return scene.shape == "mesh" and not convex
 
 
 class Solids(NamedTuple):
@@ -50,7 +65,8 @@ class Solids(NamedTuple):
 
     Attributes
     ----------
-    hull : SupportMap, of diameter 1
+    shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree is a stump
+    concave : whether the surface is to be searched where hulls touch
     inradius : of a sphere around the centre that the hull holds
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
@@ -62,7 +78,8 @@ class Solids(NamedTuple):
     scale : units a metre, a power of two, so that bodies are about 1 across in the narrow phase
     """
 
-    hull: SupportMap
+    shape: MeshShape
+    concave: bool
     inradius: float
     sizes: Floats
     reaches: Floats
@@ -86,9 +103,10 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     """
     sizes, spins, start = bodies.sizes[order], bodies.spins[order], bodies.quaternions[order]
     reaches, rates = np.empty(len(sizes)), np.empty((len(sizes), 2))
-    measure(form.hull.vertices, sizes, spins, start, reaches, rates)
+    measure(form.shape.hull.vertices, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
-    return Solids(form.hull, form.inradius, sizes, reaches, spins, rates, start, start.copy(), tolerance, scale)
+    turns = start.copy()
+    return Solids(form.shape, form.concave, form.inradius, sizes, reaches, spins, rates, start, turns, tolerance, scale)
 
 
 @kernel

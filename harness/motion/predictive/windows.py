@@ -16,10 +16,10 @@ import numpy as np
 from harness.kernel import step
 from harness.motion.predictive.state import HITS, LABEL, Bytes, Floats, Ints, Longs
 
-# What a window, or a body's way to a wall, waits for: a search for the contact of bodies that are apart; the same for
-# bodies whose spheres overlap when they are first looked at, so that they may be touching; a search for the end of a
-# contact; that end; or the hit that a search has found.
-APART, UNSURE, TOUCHING, PARTING, DUE = range(5)
+# What a window, or a body's way to a wall, waits for: a search for the contact of bodies that are apart; a closer one,
+# where their hulls are near each other; a search for the contact of bodies whose spheres overlap when they are first
+# looked at, so that they may be touching; a search for the end of a contact; that end; the hit that a search has found.
+APART, NEAR, UNSURE, TOUCHING, PARTING, DUE = range(6)
 
 # Columns of `marks`.
 OTHER, OTHER_HITS, PHASE, NEXT = range(4)
