@@ -102,4 +102,6 @@ def _setting(value: Any) -> str:
         return " or ".join(map(_setting, value))
     if isinstance(value, Mapping):
         return json.dumps(dict(value))
+    if isinstance(value, str) and value.startswith('[{"position"'):  # the bodies of a scene, as a table keeps them
+        return f"{len(json.loads(value))} given"
     return declared(value) if isinstance(value, int | float) and not isinstance(value, bool) else str(value)

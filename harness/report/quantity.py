@@ -108,6 +108,8 @@ def leaf_text(value: object) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key} {_inner(key, inner)}" for key, inner in value.items()) or "none"
     if isinstance(value, list | tuple):
+        if value and all(isinstance(item, dict) for item in value):
+            return f"{plural(len(value), 'body', 'bodies')} given one by one"
         return " × ".join(map(leaf_text, value)) if len(value) <= 3 else json.dumps(list(value))
     return str(value)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from harness.measure.verdicts import Kind, Verdict, judge
+from harness.measure.verdicts import Kind, Verdict, expected_refusals, judge
 
 
 @dataclass(frozen=True)
@@ -385,3 +385,22 @@ def test_a_ratio_of_nothing_to_nothing_is_undecided() -> None:
     verdict = judged(Row("pair_hits", ratio_to={"algorithm": "a"}, at_most=1), runs, "algorithm")
     assert verdict.verdict == "undecided"
     assert verdict.groups[0].value is None
+
+
+def test_a_refusal_is_expected_by_its_own_metric_and_breaks_every_other() -> None:
+    runs = table({"count": 5, "escaped": [0.0]}, {"count": 500, "escaped": [0.0]})
+    runs.loc[runs["count"] == 500, ["status", "reason", "escaped"]] = ["rejected", "too dense", math.nan]
+    expected = Row("rejected", {"count": 500}, equals=1.0)
+    assert judged(expected, runs, "count", kind="expectation").verdict == "holds"
+    assert judged(Row("rejected", {"count": 5}, equals=1.0), runs, "count", kind="expectation").verdict == "fails"
+    assert judged(Row("rejected", {"count": 5}, equals=0.0), runs, "count", kind="expectation").verdict == "holds"
+    assert judged(Row("escaped", equals=0.0), runs, "count", kind="expectation").verdict == "fails"
+    assert expected_refusals([Row("escaped", equals=0.0), expected], runs) == {("p1", 0)}
+    assert expected_refusals([Row("rejected", equals=0.0)], runs) == set()
+    assert (runs["status"] == "rejected").sum() == 1
+
+
+def test_a_crash_is_no_refusal() -> None:
+    runs = table({"count": 5, "escaped": [0.0], "lost": [0]})
+    assert judged(Row("rejected", equals=1.0), runs, kind="expectation").verdict == "fails"
+    assert expected_refusals([Row("rejected", equals=1.0)], runs) == set()

@@ -397,3 +397,18 @@ def test_results_in_a_read_only_place_can_be_read(read_only: Path) -> None:
         raise AssertionError([record.name for record in tables.experiments(read_only)])
 
     assert as_nobody(read) == "AssertionError: ['first']"
+
+
+def test_runs_that_lack_a_metric_are_found_by_their_newest_run(database: Database) -> None:
+    sweep = begin(database)
+    listed(database, sweep, GRID, TREE)
+    add(database, sweep, "grid-5", 0, reversal_error=0.0, frames=600)
+    add(database, sweep, "grid-5", 1, frames=600)
+    add(database, sweep, "tree-5", 0, "failed")
+    history = database.history
+    asked = {"grid-5": {"reversal_error"}, "tree-5": {"reversal_error"}, "unknown": {"frames"}}
+    assert history.without(asked) == [("grid-5", 1)]
+    assert history.without({"grid-5": set()}) == []
+    again = begin(database)
+    add(database, again, "grid-5", 1, reversal_error=0.0)
+    assert database.history.without(asked) == []

@@ -44,10 +44,12 @@ def build(half_box: Floats, radii: Floats, skin: float) -> Cells:
     frames = np.zeros((grids, 8))
     needed = np.zeros(3)
     finer = 0.0
+    width = np.inf  # of the narrowest cell of a finer grid
     for grid in reversed(range(grids)):
         members = radii[classes == grid]
         largest = float(members.max(initial=0.0))
-        margin = max(0.1 * largest, 0.5 * finer) if finer else 0.0
+        # few small spheres stand in wide cells: a margin of their own size would be flown through again and again
+        margin = max(0.1 * largest, 0.5 * finer, 0.25 * width) if finer else 0.0
         least = np.maximum(2.0 * largest + skin, needed + largest + 2.0 * margin if finer else 0.0)
         shape = cell_counts(
             half_box, least * (1.0 + SLACK) + 1e-14 * half_box.max(), CELLS_PER_SPHERE * len(members) + 27
@@ -56,7 +58,7 @@ def build(half_box: Floats, radii: Floats, skin: float) -> Cells:
         frames[grid, :3] = -half_box
         frames[grid, 3:6] = 2.0 * half_box / shape
         frames[grid, 6:] = largest, margin
-        finer = max(finer, largest)
+        finer, width = max(finer, largest), min(width, float(frames[grid, 3:6].min()))
         needed = np.maximum(needed, frames[grid, 3:6] + largest)
     sizes = shapes[:, :3].prod(axis=1)
     shapes[:, 3] = np.concatenate(([0], np.cumsum(sizes)[:-1]))

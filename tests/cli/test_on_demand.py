@@ -1,0 +1,68 @@
+"""Metrics made on demand, results that are no numbers, and refusals that are expected: through the real commands."""
+
+import json
+
+from harness.cli.main import main
+
+PLAIN = """
+title: Plain
+scene: {shape: sphere, count: 4, box: [5, 5, 5]}
+motion: {duration: 0.5}
+measure: {repeats: 1, timeout: 20}
+"""
+ASKING = (
+    PLAIN
+    + """
+expect:
+  - {metric: mirror_error, at_most: 0}
+  - {metric: quaternion_drift, at_most: 1.0e-14}
+"""
+)
+REFUSED = """
+title: Refused
+scene: {shape: sphere, count: 23, box: [2.5, 2.5, 2.5]}
+sweep: {count: [2, 23]}
+motion: {duration: 0.1}
+measure: {repeats: 1, timeout: 20}
+expect:
+  - {metric: rejected, where: {count: 23}, equals: 1}
+  - {metric: escaped, where: {count: 2}, equals: 0}
+"""
+
+
+def runs(capsys):
+    capsys.readouterr()
+    assert main(["export", "--format", "json"]) == 0
+    return json.loads(capsys.readouterr().out)["runs"]
+
+
+def test_a_metric_is_made_where_an_experiment_names_it_also_of_points_that_were_run_without(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plain.yaml").write_text(PLAIN)
+    assert main(["sweep", "plain.yaml", "--quiet"]) == 0
+    (run,) = runs(capsys)
+    assert "mirror_error" not in run["metrics"]
+
+    (tmp_path / "asking.yaml").write_text(ASKING)
+    assert main(["sweep", "plain.yaml", "asking.yaml", "--quiet"]) == 0
+    for run in runs(capsys):  # the point is shared by both experiments
+        assert run["metrics"]["mirror_error"] == 0
+        assert run["metrics"]["quaternion_drift"] <= 1e-14
+        assert "reversal_error" not in run["metrics"]
+    main(["sweep", "plain.yaml", "asking.yaml", "--dry-run"])
+    assert "0 runs to do" in capsys.readouterr().out
+
+    (tmp_path / "refused.yaml").write_text(REFUSED)
+    assert main(["sweep", "refused.yaml"]) == 0
+    assert "1 ok, 1 rejected" in capsys.readouterr().out
+    refused = next(run for run in runs(capsys) if run["status"] == "rejected")
+    assert "at most 0.740" in refused["reason"]
+
+
+def test_a_refusal_that_nobody_expects_fails_the_sweep(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "refused.yaml").write_text(REFUSED.replace("where: {count: 23}", "where: {count: 2}"))
+    assert main(["sweep", "refused.yaml", "--quiet"]) == 1
+    assert "rejected at count=2 is 0 (expected exactly 1)" in capsys.readouterr().out

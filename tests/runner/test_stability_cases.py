@@ -1,0 +1,70 @@
+"""The experiments on stability, in a short form: all that they expect holds, and no run ends without a verdict."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from harness.errors import InputError
+from harness.measure.verdicts import judge
+from harness.runner.execute import execute
+from harness.runner.key import point_key
+from harness.runner.preparation import prepare
+from harness.runner.servers import asked_of, mesh_of
+from harness.runner.setting import derived_parameters
+from harness.scene.launch import PlacementError
+from harness.store.records import RunRecord
+from harness.store.tables import run_table
+
+CASES = {path.stem: path for path in sorted((Path(__file__).parents[2] / "experiments" / "stability").glob("*.yaml"))}
+# What takes long is flown for less time, in a smaller crowd, or at fewer points.
+SHORTER = {
+    "at-rest": {"duration": 1},
+    "billion-seconds": {"count": 3},
+    "dense-packing": {"algorithm": ["grid", "predictive", "predictive"], "backend": "fcl", "duration": 0.02},
+    "energy-momentum": {"duration": 2, "count": 20},
+    "fast-spin": {"duration": 0.05, "shape": "hull"},
+    "inelastic-collapse": {"duration": 4},
+    "long-step": {"duration": 20},
+    "no-room": {"duration": 0.01},
+    "rattling": {"dt": 0.1},
+    "size-ratio": {"duration": 1, "count": 100},
+    "sizes": {"duration": 0.2, "shape": ["sphere", "hull"]},
+    "symmetries-of-shapes": {"duration": 0.25, "shape": "mesh"},
+}
+
+
+@cache
+def flown(name):
+    """The experiment, and its runs as the database would have them; each is flown in this process."""
+    (experiment,), meshes = prepare([CASES[name]], SHORTER.get(name, {}))
+    records = []
+    for point in experiment.points:
+        mesh = mesh_of(experiment, point, meshes)
+        status, reason, metrics = "ok", None, {}
+        try:
+            metrics = execute(point, mesh, asked=asked_of(experiment)).metrics
+        except (PlacementError, InputError) as error:
+            status, reason = "rejected", str(error)
+        parameters = {**point.parameters, **derived_parameters(point, mesh)}
+        records.append(RunRecord(name, point_key(point, mesh), 0, status, reason, 0, True, parameters, metrics))
+    return experiment, run_table(records)
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if not name.startswith("hundred-")])
+def test_all_that_a_case_expects_holds(name):
+    experiment, runs = flown(name)
+    assert set(runs["algorithm"]) >= {"grid", "predictive"}
+    for row in experiment.expect:
+        verdict = judge(row, runs, experiment.swept, "expectation")
+        assert verdict.verdict == "holds", verdict.statement
+
+
+def test_stepped_runs_fall_short_where_they_are_known_to():
+    """A case whose claims hold for every method would not be stiff."""
+    for name in ("far-away", "grazing-between-frames", "rattling", "tight-box"):
+        experiment, runs = flown(name)
+        for row in experiment.claims:
+            groups = judge(row, runs, experiment.swept, "claim").groups
+            held = {group.parameters["algorithm"] for group in groups if group.verdict == "holds"}
+            assert held == {"predictive"}, name
