@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from harness.backends import registry
-from harness.backends.protocol import approximations
+from harness.backends.protocol import approximations, assemble
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
@@ -68,6 +68,7 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[]
         return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
+        assemble(backend, point.engine.stages)
         backend.load(scene)
     return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt, **answers)
 
@@ -88,9 +89,16 @@ def plan_of(point: Point, scene: Scene) -> Plan:
         backend=point.engine.backend,
         algorithm=point.engine.algorithm,
         response=point.motion.response,
+        duration=_flown(point),
         approximated=approximated,
         forced=point.engine.stages,
     )
+
+
+def _flown(point: Point) -> float:
+    """s of simulated time until the last frame, or the end of an event-driven run."""
+    motion = point.motion
+    return motion.duration if point.engine.algorithm == "predictive" else motion.frames * motion.dt
 
 
 def _peak_memory() -> float:
