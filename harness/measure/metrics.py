@@ -65,6 +65,7 @@ METRICS: dict[str, Metric] = _table(
         "guarded_hits", "1", "counter", "inelastic hits answered elastically, because they came too soon after another"
     ),
     Metric("stalled_events", "1", "counter", "times a body was made to wait, because too many events came in no time"),
+    Metric("advancement_steps", "1", "counter", "steps of conservative advancement in all searches for a contact"),
     Metric("predictions_per_event", "1", "counter", "predictions / events"),
     Metric("pair_tests_per_event", "1", "counter", "pair_tests / events, of a predictive run"),
     Metric("pair_tests_per_body", "1", "counter", "pair_tests / (frames · bodies), of a stepped run"),

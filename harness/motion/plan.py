@@ -79,8 +79,7 @@ def make_plan(
     """
     asked, decisions = Asked(scene, backend, algorithm, response, duration), Decisions(forced)
     if algorithm == "predictive":
-        _orientations(asked, decisions)
-        _scheduled(scene, decisions)
+        _scheduled(asked, decisions)
     else:
         _motion(asked, decisions)
         _orientations(asked, decisions)
@@ -191,17 +190,38 @@ def _penetration(scene: Scene, decisions: Decisions) -> None:
         decisions.take("penetration", True, "max_penetration is measured on touching pairs, outside every clock")
 
 
-def _scheduled(scene: Scene, decisions: Decisions) -> None:
+_SCHEDULED = "event-driven motion has no stage to force"
+
+
+def _scheduled(asked: Asked, decisions: Decisions) -> None:
     """The stages of event-driven motion."""
-    count, folds = len(scene.bodies), "the next wall of each body, from its velocity"
-    decisions.take("frames", False, "events are computed, not stepped to", fixed="predictive has no frames")
-    if count < 2:
-        why = f"there is no pair of bodies among {count}"
-        decisions.take("pairs", False, why, fixed=why)
+    scene, count = asked.scene, len(asked.scene.bodies)
+    solid, alone = scene.shape != "sphere", f"there is no pair of bodies among {count}"
+    grids = "cells of one size" if equal_sizes(scene) else "a hierarchy of cells, one level a size class"
+
+    def take(name: str, kept: bool, why: str) -> None:
+        decisions.take(name, kept, why, fixed=_SCHEDULED)
+
+    take("frames", False, "events are computed, not stepped to")
+    if solid:
+        take("orientations", True, "bodies are turned where a contact is searched, and nowhere else")
+        take("backend", False, "contacts are searched by conservative advancement; no library is asked")
+        found = f"from when to when each body's bounding sphere overlaps its neighbours', found by {grids}"
     else:
-        why = "spheres are solved in closed form; no library is asked"
-        decisions.take("backend", False, why, fixed="no library is asked")
-        grids = "cells of one size" if equal_sizes(scene) else "a hierarchy of cells, one level a size class"
-        why = f"the next hit of each body among its neighbours, from {grids} or from lists when dense"
-        decisions.take("pairs", True, why, fixed="hits would be missed")
-    decisions.take("walls", True, folds, fixed="bodies would leave the box")
+        take("orientations", False, "a sphere looks the same however it is turned")
+        take("backend", False, "spheres are solved in closed form; no library is asked")
+        found = f"the next hit of each body among its neighbours, from {grids} or from lists when dense"
+    take("pairs", count > 1, found if count > 1 else alone)
+    if solid:
+        hulls = "hulls are advanced to their contact when their spheres meet, not before"
+        take("hull_search", count > 1, hulls if count > 1 else alone)
+        surfaces = "surfaces are advanced to their contact when their hulls meet, not before"
+        if scene.shape == "hull":
+            take("mesh_search", False, "the shape is the hull")
+        else:
+            take("mesh_search", count > 1, surfaces if count > 1 else alone)
+    take("walls", True, "the next wall of each body, from its velocity")
+    if solid and asked.response == "none":
+        take("wall_search", False, "response is none: the box folds the path of each bounding sphere exactly")
+    elif solid:
+        take("wall_search", True, "the support function of the hull, once a bounding sphere meets the wall")

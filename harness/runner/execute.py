@@ -65,7 +65,8 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[]
     motion = point.motion
     answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
     if point.engine.algorithm == "predictive":
-        return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
+        tolerance = point.engine.tolerance
+        return partial(fly_predicted, scene, plan, duration=motion.duration, tolerance=tolerance, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
         assemble(backend, point.engine.stages)

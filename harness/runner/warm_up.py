@@ -102,10 +102,24 @@ def _mesh_pairs() -> None:
 
 
 def _spheres_predicted() -> None:
-    scene = _two("sphere")
+    _predict("sphere")
+
+
+def _hulls_predicted() -> None:
+    _predict("hull")
+
+
+def _meshes_predicted() -> None:
+    _predict("mesh")
+
+
+def _predict(shape: Shape) -> None:
+    """Half a second of events, and the looks between them."""
+    scene = _two(shape)
     plan = make_plan(scene, backend="", algorithm="predictive", response="elastic")
     fly_predicted(scene, plan, duration=0.5, response="elastic")
-    Penetration(scene).deepest(_PAIR, scene.bodies.positions, scene.bodies.quaternions)
+    if shape != "mesh":
+        Penetration(scene).deepest(_PAIR, scene.bodies.positions, scene.bodies.quaternions)
 
 
 class _Piece(NamedTuple):
@@ -119,6 +133,7 @@ class _Piece(NamedTuple):
 _STEPPED = ("brute-force", "grid", "tree", "native")
 _ALL: tuple[Shape, ...] = ("sphere", "hull", "mesh")
 _SPHERES: tuple[Shape, ...] = ("sphere",)
+_HULLS: tuple[Shape, ...] = ("hull",)
 _TURNED: tuple[Shape, ...] = ("hull", "mesh")
 _MESHES: tuple[Shape, ...] = ("mesh",)
 _PIECES = (
@@ -129,6 +144,8 @@ _PIECES = (
     _Piece(_hull_pairs, ("grid",), _TURNED),
     _Piece(_mesh_pairs, ("grid",), _MESHES),
     _Piece(_spheres_predicted, ("predictive",), _SPHERES),
+    _Piece(_hulls_predicted, ("predictive",), _HULLS),
+    _Piece(_meshes_predicted, ("predictive",), _MESHES),
 )
 
 _PAIR: Pairs = np.array([[0, 1]])

@@ -34,7 +34,9 @@ def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 @pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
-@pytest.mark.parametrize(("count", "algorithm"), [(1, "brute-force"), (12, "brute-force"), (12, "grid")])
+@pytest.mark.parametrize(
+    ("count", "algorithm"), [(1, "brute-force"), (12, "brute-force"), (12, "grid"), (12, "predictive")]
+)
 def test_after_the_warm_up_nothing_is_compiled(spheres, shape, response, count, algorithm):
     cube = cube_mesh()
     mesh = pickle.loads(pickle.dumps(make_mesh("cube", cube.vertices, cube.faces)))  # as it reaches a server

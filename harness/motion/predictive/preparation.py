@@ -14,6 +14,7 @@ from harness.motion.predictive.order import CROWD, along_curve
 from harness.motion.predictive.state import (
     CAPACITY,
     CELLS,
+    COUNTS,
     ELASTIC,
     FRESH,
     GRID,
@@ -174,7 +175,7 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
         cells=build(start.half_box, start.radii, skin),
         lists=lists(rows, method),
         rules=rules,
-        tally=Tally(counts=np.zeros(16, dtype=np.int64), sums=np.zeros(2 * SUMS), clock=clock()),
+        tally=Tally(counts=np.zeros(COUNTS, dtype=np.int64), sums=np.zeros(2 * SUMS), clock=clock()),
         journal=journal(CHUNK if record else 0),
         scratch=Scratch(candidates=np.zeros(n + 2, dtype=np.uint32), lanes=np.zeros(8 * 64)),
     )
