@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from itertools import chain, combinations, compress, repeat
 from typing import Literal
@@ -11,6 +11,8 @@ import fcl
 import numpy as np
 
 from harness.arrays import Floats, Pairs
+from harness.backends.detection import decide_detection
+from harness.backends.stages import Decisions
 from harness.broadphase.grid import Grid
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.narrowphase.fcl_objects import FclObjects
@@ -20,8 +22,6 @@ from harness.narrowphase.units import UNITS
 from harness.scene.scene import Scene, Shape
 
 Algorithm = Literal["brute-force", "grid", "tree"]
-
-SETTLED_BY: dict[Shape, type[Judge]] = {"hull": HullJudge, "mesh": MeshJudge}
 
 # Up to so many bodies brute force keeps its pairs in lists (8 MB), which saves a tenth of its time.
 MOST_LISTED = 1000
@@ -40,16 +40,17 @@ class Fcl:
 
     Attributes
     ----------
-    hull_axis : set to False before loading, `grid` puts all close pairs to FCL as well; the answer is the same
+    stages : stages of detection (`harness.backends.detection`) forced on or off, set before loading; without, a scene
+        gets what it needs. The answer is the same.
     """
 
     name = "fcl"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
     units = UNITS
     precision = "double"
-    hull_axis = True
 
     def __init__(self, algorithm: Algorithm = "brute-force") -> None:
+        self.stages: Mapping[str, bool] = {}
         self._algorithm = algorithm
         self._request = fcl.CollisionRequest()
 
@@ -68,19 +69,23 @@ class Fcl:
             first, second = self._both_sides()
             self._listed = (list(first), list(second)) if few else None
             return
-        sizes = scene.bodies.sizes
+        decisions = Decisions(self.stages)
+        decide_detection(scene, self._algorithm, decisions)
+        kept = {stage.name: stage.kept for stage in decisions.stages}
         if self._algorithm == "tree":
             self._broad = FclTree(scene)
-        elif sizes.min(initial=1.0) == sizes.max(initial=1.0):
-            self._broad = Grid(scene.bodies.radii, scene.box)
         else:
-            self._broad = HierarchicalGrid(scene.bodies.radii, scene.box)
+            self._broad = (HierarchicalGrid if kept["size_classes"] else Grid)(scene.bodies.radii, scene.box)
         if scene.shape == "sphere":
             self._find = partial(self._spheres, self._broad)
+            return
+        if not kept["hull_axis"]:
+            self._judge = FclJudge(scene)
+        elif scene.shape == "hull":
+            self._judge = HullJudge(scene)
         else:
-            settled = self._algorithm == "grid" and self.hull_axis
-            self._judge = SETTLED_BY[scene.shape](scene) if settled else FclJudge(scene)
-            self._find = partial(self._culled, self._broad, self._judge)
+            self._judge = MeshJudge(scene, crossing=kept["crossing"], containment=kept["containment"])
+        self._find = partial(self._culled, self._broad, self._judge)
 
     @property
     def counters(self) -> dict[str, float]:

@@ -61,6 +61,12 @@ def precision(backend: Backend) -> str:
     return str(getattr(backend, "precision", ""))
 
 
+def assemble(backend: Backend, stages: Mapping[str, bool]) -> None:
+    """Tell a backend that can leave stages out, before it is loaded, which are forced on or off."""
+    if hasattr(backend, "stages"):
+        backend.stages = stages
+
+
 def approximations(backend: Backend) -> Mapping[Shape, str]:
     """The shapes that the backend replaces by another, and how; empty for an exact backend."""
     replaced: Mapping[Shape, str] = getattr(backend, "approximations", {})

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.errors import InputError
+
+if TYPE_CHECKING:
+    from harness.experiment.experiment import Experiment, Point
+    from harness.motion.plan import Plan
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -46,11 +52,49 @@ def run(arguments: argparse.Namespace) -> int:
         json.dump({"runs": runs}, sys.stdout, allow_nan=False)
         print()
         return 0
-    for point, plan in plans:
-        varied = ", ".join(f"{leaf} {point.parameters[leaf]}" for leaf in experiment.swept)
-        print(f"{experiment.title}{': ' if varied else ''}{varied}")
-        for warning in plan.warnings:
-            print(f"  WARNING   {warning}")
-        for stage in plan.stages:
-            print(f"  {'keeps' if stage.kept else 'leaves out':10}  {stage.name:13}  {stage.why}")
+    _show(experiment, plans)
     return 0
+
+
+def _show(experiment: Experiment, plans: Sequence[tuple[Point, Plan]]) -> None:
+    """One table for all points that have the same plan."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(highlight=False)
+    for plan, points in _alike(plans):
+        title = f"{experiment.title}{_named(experiment, points)}"
+        console.print(Text(title, "bold"), soft_wrap=True)
+        for warning in plan.warnings:
+            console.print(Text(f"  WARNING   {warning}", "bold red"), soft_wrap=True)
+        table = Table.grid(padding=(0, 2, 0, 0))
+        for stage in plan.stages:
+            fate = "keeps" if stage.kept else "leaves out"
+            if console.is_terminal:
+                style = "" if stage.kept else "dim"
+                shown = Text(fate, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
+                table.add_row("", *shown, Text(stage.why, style))
+            else:
+                print(f"  {fate:10}  {stage.name:13}  {stage.why}")
+        if console.is_terminal:
+            console.print(table)
+
+
+def _alike(plans: Sequence[tuple[Point, Plan]]) -> Iterable[tuple[Plan, list[Point]]]:
+    """Each plan once, with all of its points, in the order of its first."""
+    points: dict[Plan, list[Point]] = {}
+    for point, plan in plans:
+        points.setdefault(plan, []).append(point)
+    return points.items()
+
+
+def _named(experiment: Experiment, points: Sequence[Point]) -> str:
+    """The points by the values of what varies."""
+    from harness.experiment.messages import flow
+
+    told = [
+        f"{leaf} {', '.join(dict.fromkeys(flow(point.parameters[leaf]) for point in points))}"
+        for leaf in experiment.swept
+    ]
+    return f": {'; '.join(told)}" if told else ""

@@ -36,7 +36,7 @@ def _number(name: str, value: Any) -> float:
 Where = Annotated[dict[LeafName, Any], AfterValidator(_in_type)]
 
 _PLAIN = ("at_most", "at_least", "equals", "between", "within")
-_RATIO = ("at_most", "at_least")
+_RATIO = ("at_most", "at_least", "equals", "between")
 
 
 class Within(Declared):
@@ -62,7 +62,7 @@ class Criterion(Declared):
     )
     ratio_to: Where | None = Field(
         None,
-        description="leaf values of the points that the metric is divided by; the ratio is `at_most` or `at_least`",
+        description="leaf values of the points that the metric is divided by; the ratio is `at_most`, `equals`, …",
     )
 
     @model_validator(mode="after")
@@ -73,11 +73,11 @@ class Criterion(Declared):
         if self.exponent_of is not None and given != ["between"]:
             raise wrong(f"exponent_of needs between: [low, high]{_besides(given, ('between',))}")
         if self.ratio_to is not None and (len(given) != 1 or given[0] not in _RATIO):
-            raise wrong(f"ratio_to needs at_most or at_least{_besides(given, _RATIO)}")
+            raise wrong(f"ratio_to needs one of {listed(_RATIO, 'or')}{_besides(given, _RATIO)}")
         if self.ratio_to is not None and not self.ratio_to:
             raise wrong("ratio_to must name the leaf values to divide by, such as {algorithm: brute-force}")
         if len(given) != 1:
-            options = listed([*_PLAIN, "exponent_of with between", "ratio_to with at_most or at_least"], "or")
+            options = listed([*_PLAIN, "exponent_of with between", "ratio_to with one of them"], "or")
             count = f"{listed(given)} are too many" if given else "none is given"
             raise wrong(f"needs exactly one of {options}; {count}")
         return self

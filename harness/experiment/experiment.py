@@ -92,7 +92,16 @@ class Experiment:
         """A problem with the value at a key path of the file, such as ('scene', 'mesh')."""
         return self.document.problem(path, message)
 
-    def leaf_problem(self, leaf: str, value: Any, message: str) -> Problem:
-        """A problem with one of the values that a leaf has, at the place that gives it: base, sweep or --set."""
+    def leaf_problem(self, leaf: str, value: Any, message: str, below: Sequence[str | int] = ()) -> Problem:
+        """A problem with one of the values that a leaf has, at the place that gives it: base, sweep or --set.
+
+        Parameters
+        ----------
+        leaf, value : whose value it is
+        message : what is wrong with it
+        below : the keys within the value that lead to what is wrong
+        """
         origin = self.origins.get((leaf, identity(value)))
+        if isinstance(origin, tuple):
+            origin = (*origin, *below)
         return problem_at(self.document, origin if origin is not None else (), message)

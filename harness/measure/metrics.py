@@ -86,6 +86,9 @@ METRICS: dict[str, Metric] = _table(
     *_clock("box_seconds_per_frame", "box_seconds / frames"),
     *_clock("frames_per_second", "frames / run_seconds", "1/s"),
     *_clock("simulated_per_second", "simulated seconds / run_seconds", "s/s"),
+    Metric(
+        "event_digest", "1", "error", "number from 1 to 2^52 that stands for all hits of a stepped run, in their order"
+    ),
     Metric("collision_rate", "1/s", "error", "pair hits of a body in a second"),
     Metric("pressure", "Pa", "error", "mean force on the walls over the area that centres can reach"),
     Metric("virial_residual", "1", "error", "imbalance of the virial theorem over the run, relative"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.arrays import Flags, Ints, Pairs
 from harness.measure.conservation import Conservation
+from harness.motion.digest import EventDigest
 from harness.motion.hits import HitLog
 from harness.motion.kinematics import Flight
 from harness.narrowphase.penetration import Penetration
@@ -31,6 +32,7 @@ class Observer:
         self.pair_hits = self.pair_contacts = self.wall_hits = 0
         self.max_penetration = 0.0
         self.log = HitLog() if traced else None
+        self.digest = EventDigest()
         self.conservation = Conservation(scene.bodies)
         self._flight = flight
         self._half = scene.box.half
@@ -53,21 +55,28 @@ class Observer:
         walls : (n, 6) int or bool array, how often which body hit which wall
         """
         if len(pairs):
-            count = int(np.count_nonzero(hits))
-            self.pair_hits += count
-            self.pair_contacts += len(pairs) - count
+            answered = pairs[hits]
+            self.pair_hits += len(answered)
+            self.pair_contacts += len(pairs) - len(answered)
+            if len(answered):
+                self.digest.add_pairs(time, answered)
             if self._penetration is not None:
                 deepest = self._penetration.deepest(pairs, self._flight.positions, self._flight.quaternions)
                 self.max_penetration = max(self.max_penetration, deepest)
             if self.log is not None:
-                self.log.add_pairs(time, pairs[hits])
+                self.log.add_pairs(time, answered)
         wall_hits = int(walls.sum())
         if wall_hits:
             self.wall_hits += wall_hits
+            self.digest.add_walls(time, walls)
             if self.log is not None:
                 self.log.add_walls(time, walls)
         self._outside |= (np.abs(self._flight.positions) > self._half).any(axis=1)
         self.conservation.observe(self._flight.velocities)
+
+    def repeat(self, pairs: Pairs, times: int) -> None:
+        """Take note of frames that are like the last one, in which nothing was answered."""
+        self.pair_contacts += times * len(pairs)
 
 
 class Folds:

@@ -1,15 +1,17 @@
 """Stepped motion: frame after frame, advance, find all touching pairs, answer them, then the walls.
 
-Walls come last, so that no answer to a pair can send a centre out of the box.
+Walls come last, so that no answer to a pair can send a centre out of the box. A frame is assembled from the steps that
+the plan keeps; what it leaves out is not there to be asked.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from harness.arrays import Flags
+from harness.arrays import Flags, Ints, Pairs
 from harness.backends.protocol import Backend, counters
 from harness.measure.clocks import Clock
 from harness.measure.conservation import energy
@@ -22,6 +24,30 @@ from harness.motion.soundness import refuse_lost
 from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
+
+PHASES = ("pair_seconds", "response_seconds", "box_seconds")
+
+
+@dataclass
+class _Frame:
+    """What the steps of a frame hand on.
+
+    Attributes
+    ----------
+    time : s
+    pairs : (k, 2) int array, touching
+    hits : (k,) bool array, which of them were answered
+    walls : (n, 6), which body was answered by which wall
+    """
+
+    time: float
+    pairs: Pairs
+    hits: Flags
+    walls: Ints | Flags
+
+
+# What is done in a frame, in order, each with the clock that it counts for.
+_Step = tuple[str, Callable[[_Frame], None]]
 
 
 def fly_stepped(
@@ -54,33 +80,30 @@ def fly_stepped(
     flight = Flight(scene.bodies, scene.box, folded=response == "none", turning=plan.keeps("orientations"))
     observer = Observer(scene, flight, penetration=plan.keeps("penetration"), traced=traced)
     answers = None if response == "none" else Answers(scene.bodies.masses, response, restitution)
-    touching_walls = _wall_test(scene, plan)
-    onsets, folds = Onsets(len(scene.bodies)), Folds(flight)
-    pairs = np.empty((0, 2), np.int64)
-    clock = Clock("pair_seconds", "response_seconds", "box_seconds")
+    steps = _steps(scene, plan, flight, backend, answers)
+    look = _look(observer, flight, answers)
+    clock = Clock(*PHASES)
 
-    for frame in range(1, frames + 1):
-        time = frame * dt
+    def fly(number: int) -> _Frame:
+        frame = _Frame(number * dt, _NO_PAIRS, _NO_HITS, _NO_WALLS)
         clock.start()
-        flight.move_to(time)
-        if backend is not None:
-            pairs = backend.pairs(flight.positions, flight.quaternions)
-        clock.lap("pair_seconds")
-        if answers is None:
-            observer.frame(time, pairs, onsets.of(pairs), folds.by(time))
-            continue
-        answers.changed[:] = False
-        hits = answers.pairs(pairs, flight.positions, flight.velocities)
-        clock.lap("response_seconds")
-        walls = answers.walls(touching_walls(flight), flight.velocities)
-        flight.redirect(answers.changed, time)
-        clock.lap("box_seconds")
-        observer.frame(time, pairs, hits, walls)
+        for phase, step in steps:
+            step(frame)
+            clock.lap(phase)
+        look(frame)
+        return frame
+
+    if plan.keeps("motion"):
+        for number in range(1, frames + 1):
+            fly(number)
+        tests = _pair_counters(backend)
+    else:
+        tests = _stand(fly, frames, observer, backend)
 
     refuse_lost(flight.positions, flight.velocities, frames * dt)
     counted: dict[str, float] = {
         "frames": frames,
-        **_pair_counters(backend),
+        **tests,
         "box_tests": 6 * len(scene.bodies) * frames if plan.keeps("walls") else 0,
         "pair_hits": observer.pair_hits,
         "pair_contacts": observer.pair_contacts,
@@ -95,6 +118,87 @@ def fly_stepped(
         **_errors(observer, answers, plan),
     }
     return Outcome(metrics, _trace(scene, flight, observer, end, counted) if traced else None)
+
+
+_NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
+_NO_HITS: Flags = np.empty(0, np.bool_)
+_NO_WALLS: Flags = np.empty((0, 6), np.bool_)
+
+
+def _steps(scene: Scene, plan: Plan, flight: Flight, backend: Backend | None, answers: Answers | None) -> list[_Step]:
+    """The steps of a frame that the plan keeps."""
+
+    def move(frame: _Frame) -> None:
+        flight.move_to(frame.time)
+
+    steps: list[_Step] = [("pair_seconds", move)]
+    if backend is not None:
+        detect = backend.pairs
+
+        def move_and_detect(frame: _Frame) -> None:
+            flight.move_to(frame.time)
+            frame.pairs = detect(flight.positions, flight.quaternions)
+
+        steps = [("pair_seconds", move_and_detect)]
+    if answers is None:
+        return steps
+
+    def respond(frame: _Frame) -> None:
+        answers.changed[:] = False
+        frame.hits = answers.pairs(frame.pairs, flight.positions, flight.velocities)
+
+    def respond_and_redirect(frame: _Frame) -> None:
+        respond(frame)
+        flight.redirect(answers.changed, frame.time)
+
+    def walls_and_redirect(frame: _Frame) -> None:
+        frame.walls = answers.walls(touching_walls(flight), flight.velocities)
+        flight.redirect(answers.changed, frame.time)
+
+    def walls_alone(frame: _Frame) -> None:
+        answers.changed[:] = False
+        walls_and_redirect(frame)
+
+    if not plan.keeps("walls"):
+        return [*steps, ("response_seconds", respond_and_redirect)] if plan.keeps("response") else steps
+    touching_walls = _wall_test(scene, plan)
+    if not plan.keeps("response"):
+        return [*steps, ("box_seconds", walls_alone)]
+    return [*steps, ("response_seconds", respond), ("box_seconds", walls_and_redirect)]
+
+
+def _look(observer: Observer, flight: Flight, answers: Answers | None) -> Callable[[_Frame], None]:
+    """What is done with a frame after it, outside of all clocks."""
+
+    def answered(frame: _Frame) -> None:
+        observer.frame(frame.time, frame.pairs, frame.hits, frame.walls)
+
+    def passing(frame: _Frame) -> None:
+        observer.frame(frame.time, frame.pairs, onsets.of(frame.pairs), folds.by(frame.time))
+
+    if answers is not None:
+        return answered
+    onsets, folds = Onsets(len(flight.positions)), Folds(flight)
+    return passing
+
+
+def _stand(fly: Callable[[int], _Frame], frames: int, observer: Observer, backend: Backend | None) -> dict[str, float]:
+    """Bodies that rest: frames until two in a row have asked for the same work, which stand for all that follow.
+
+    Returns the counters of the backend as if every frame had been asked for.
+    """
+    before = _pair_counters(backend)
+    last: dict[str, float] = {}
+    for number in range(1, frames + 1):
+        frame = fly(number)
+        now = _pair_counters(backend)
+        work = {name: now[name] - before.get(name, 0) for name in now}
+        before = now
+        if work == last:
+            observer.repeat(frame.pairs, frames - number)
+            return {name: now[name] + (frames - number) * work[name] for name in now}
+        last = work
+    return before
 
 
 def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:
@@ -133,7 +237,7 @@ def _rates(counted: Mapping[str, float], bodies: int, frames: int, simulated: fl
 def _clock_metrics(clock: Clock, frames: int, simulated: float) -> dict[str, float]:
     seconds = clock.metrics()
     for kind in ("", "_elapsed"):
-        run = sum(seconds[f"{phase}{kind}"] for phase in ("pair_seconds", "response_seconds", "box_seconds"))
+        run = sum(seconds[f"{phase}{kind}"] for phase in PHASES)
         seconds[f"run_seconds{kind}"] = run
         if frames:
             seconds[f"pair_seconds_per_frame{kind}"] = seconds[f"pair_seconds{kind}"] / frames
@@ -146,6 +250,7 @@ def _clock_metrics(clock: Clock, frames: int, simulated: float) -> dict[str, flo
 
 def _errors(observer: Observer, answers: Answers | None, plan: Plan) -> dict[str, float]:
     errors = {"energy_drift": observer.conservation.energy_drift, "escaped": float(observer.escaped)}
+    errors["event_digest"] = observer.digest.value
     if answers is not None and answers.elastic and observer.conservation.momentum_scale > 0.0:
         errors["momentum_drift"] = answers.momentum_added / observer.conservation.momentum_scale
     if plan.keeps("penetration"):

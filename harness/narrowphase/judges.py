@@ -12,9 +12,9 @@ from harness.arrays import Flags, Floats, Pairs
 from harness.narrowphase.containment import Containment
 from harness.narrowphase.fcl_objects import FclObjects
 from harness.narrowphase.gjk import MARGIN, OVERLAP, SEPARATE, UNDECIDED
-from harness.narrowphase.hull_pairs import HullPairs
+from harness.narrowphase.hull_pairs import HullPairs, Verdicts
 from harness.narrowphase.mesh_pairs import MeshPairs
-from harness.narrowphase.placement import Places
+from harness.narrowphase.placement import Placement, Places
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
@@ -27,8 +27,6 @@ SLIVER = 1e-10
 
 class Judge(Protocol):
     """Decides on close pairs, frame after frame, of the bodies of a scene."""
-
-    def __init__(self, scene: Scene) -> None: ...
 
     @property
     def counters(self) -> Mapping[str, int]:
@@ -103,21 +101,27 @@ class HullJudge:
 class MeshJudge:
     """Drops meshes whose hulls are proved separate, and settles the surfaces of the others; FCL has what is left.
 
+    Parameters
+    ----------
+    scene : Scene
+    crossing : look for triangles that cross before FCL is asked; else FCL has all that the hulls leave
+    containment : look for meshes that are inside others
+
     Attributes
     ----------
     contained : (k, 2) int array, the pairs of the last frame of which one surface is inside the other; no hits
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, *, crossing: bool = True, containment: bool = True) -> None:
         assert scene.mesh is not None, "meshes come from a file"
         sizes = scene.bodies.sizes
         self._fcl = FclJudge(scene)
         self._places = Places(sizes)
         self._hulls = HullPairs(scene.mesh.hull, ON_HULL if scene.mesh.convex else MARGIN + overhang(scene.mesh))
-        self._surfaces = MeshPairs(scene.mesh)
+        self._settle = MeshPairs(scene.mesh).settle if crossing else _all_open
         # Convex bodies that overlap touch, unless one contains the other, for which it must be larger.
         self._hull_decides = scene.mesh.convex
-        self._containment = Containment(scene.mesh) if (sizes != sizes[:1]).any() else None
+        self._inside = Containment(scene.mesh).contained if containment else _none_inside
         self._sizes = sizes
         self._hull_tests = self._tests = self._contained = 0
         self.contained: Pairs = np.empty((0, 2), np.int64)
@@ -145,19 +149,26 @@ class MeshJudge:
             self._tests += len(may_touch)
             same_size = self._sizes[close[:, 0]] == self._sizes[close[:, 1]]
             asked = np.flatnonzero((verdicts == UNDECIDED) | ~same_size)
-            verdicts[asked] = self._surfaces.settle(close[asked], placement)
+            verdicts[asked] = self._settle(close[asked], placement)
         else:
             self._tests += len(close)
-            verdicts = self._surfaces.settle(close, placement)
+            verdicts = self._settle(close, placement)
         hit: Flags = verdicts == OVERLAP
         left = np.flatnonzero(verdicts == UNDECIDED)
         if len(left):
             hit[left] = self._fcl.verdicts(close[left], positions, quaternions)
-        if self._containment:
-            self.contained = self._containment.contained(close[~hit], placement)
-            self._contained += len(self.contained)
+        self.contained = self._inside(close[~hit], placement)
+        self._contained += len(self.contained)
         touching: Pairs = close[hit]
         return touching
+
+
+def _all_open(pairs: Pairs, placement: Placement) -> Verdicts:
+    return np.full(len(pairs), UNDECIDED, np.int8)
+
+
+def _none_inside(pairs: Pairs, placement: Placement) -> Pairs:
+    return pairs[:0]
 
 
 def overhang(mesh: Mesh) -> float:

@@ -11,7 +11,7 @@ from math import isfinite
 from typing import Any
 
 from harness.backends import registry
-from harness.backends.protocol import approximations
+from harness.backends.protocol import approximations, assemble
 from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
@@ -95,6 +95,7 @@ def _flight(point: Point, scene: Scene, plan: Plan, traced: bool, slower: float 
     if backend is not None:
         if scene.shape not in backend.shapes:
             raise InputError(f'backend "{backend.name}" has no shape {scene.shape}, only {", ".join(backend.shapes)}')
+        assemble(backend, point.engine.stages)
         backend.load(scene)
     return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt * slower, **answers)
 
@@ -128,9 +129,16 @@ def plan_of(point: Point, scene: Scene) -> Plan:
         backend=point.engine.backend,
         algorithm=point.engine.algorithm,
         response=point.motion.response,
+        duration=_flown(point),
         approximated=approximated,
         forced=point.engine.stages,
     )
+
+
+def _flown(point: Point) -> float:
+    """s of simulated time until the last frame, or the end of an event-driven run."""
+    motion = point.motion
+    return motion.duration if point.engine.algorithm == "predictive" else motion.frames * motion.dt
 
 
 def _peak_memory() -> float:

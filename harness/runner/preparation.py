@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from harness.backends.registry import missing, names
+from harness.backends.stages import StageError
 from harness.errors import InputError, Problem
 from harness.experiment.experiment import Experiment
 from harness.experiment.load import find_experiments, load
@@ -60,6 +61,7 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     sound = []
     for experiment in loaded:
         found = [*_names(experiment), *_mesh_problems(experiment, broken), *_namesakes(experiment, loaded)]
+        found = found or list(_forced(experiment, meshes))
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
             sound.append(experiment)
@@ -89,6 +91,28 @@ def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Ite
         if other.name == experiment.name:
             message = f'this is called "{experiment.name}" as {other.path} is; results are kept by name: rename one'
             yield Problem(message, str(experiment.path))
+
+
+def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Problem]:
+    """Stages that are forced where that would change a result, or that do not exist, as the points' plans tell."""
+    forcing = [point for point in experiment.points if point.engine.stages]
+    if not forcing:
+        return
+    from harness.runner.execute import plan_of  # half a second, which most experiments need not spend
+    from harness.runner.servers import mesh_of
+    from harness.runner.setting import SceneSizeError, build_scene
+    from harness.scene.launch import PlacementError
+
+    refused: set[tuple[str, str]] = set()
+    for point in forcing:
+        try:
+            plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory))
+        except StageError as error:
+            if (error.stage, error.message) not in refused:
+                refused.add((error.stage, error.message))
+                yield experiment.leaf_problem("stages", point.engine.stages, error.message, (error.stage,))
+        except (PlacementError, SceneSizeError, InputError):  # the run will say it
+            continue
 
 
 def _names(experiment: Experiment) -> Iterator[Problem]:

@@ -39,6 +39,19 @@ def test_validate_says_what_a_sound_file_would_run(capsys: pytest.CaptureFixture
     assert capsys.readouterr().out == "good: 2 points, 6 runs\n"
 
 
+def test_a_stage_that_cannot_be_forced_is_told_where_it_stands(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("good.yaml").write_text(GOOD.replace("[1, 2]", "[1, 2], stages: [{}, {motion: on}]"))
+    Path("names.yaml").write_text(GOOD + "engine:\n  algorithm: grid\n  stages: {pairs: on, wals: off}\n")
+    Path("wrong.yaml").write_text(GOOD.replace("[1, 2]", "[1, 2], stages: [{}, {walls: off}]"))
+    assert main(["validate", "good.yaml", "names.yaml", "wrong.yaml"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == "good: 4 points, 20 runs\n"
+    alone, unknown, wrong = captured.err.splitlines()
+    assert alone == "names.yaml:6:19: pairs cannot be forced on: there is no pair of bodies among 1"
+    assert unknown == 'names.yaml:6:29: this pipeline has no stage "wals"; did you mean "walls"?'
+    assert wrong == "wrong.yaml:3:45: walls cannot be forced off: bodies would leave the box"
+
+
 def test_validate_says_everything_about_every_file(capsys: pytest.CaptureFixture[str]) -> None:
     Path("good.yaml").write_text(GOOD)
     Path("bad.yaml").write_text(GOOD + "motion: {dt: 0}\ndt: 3\n")

@@ -237,7 +237,7 @@ def test_a_criterion_can_be_said_in_words(row: str, text: str, read: Read) -> No
         ("metric: a, at_most: 1, equals: 1", "at_most and equals are too many"),
         ("metric: a, exponent_of: count, at_most: 1", "needs between: [low, high], not at_most"),
         ("metric: a, exponent_of: shape, between: [1, 2]", "shape is not a number that anything could grow with"),
-        ("metric: a, ratio_to: {count: 5}, between: [1, 2]", "ratio_to needs at_most or at_least, not between"),
+        ("metric: a, ratio_to: {count: 5}, within: {of: 1, relative: 0}", "ratio_to needs one of at_most, at_least, "),
         ("metric: a, ratio_to: {}, at_most: 1", "ratio_to must name the leaf values"),
         ("metric: a, between: [2, 1]", "between must rise from low to high"),
         ("metric: a, where: {cuont: 5}, equals: 1", 'unknown leaf "cuont"; did you mean "count"?'),

@@ -166,7 +166,7 @@ def test_most_pairs_are_settled_without_fcl():
 def test_without_the_hull_axis_all_close_pairs_are_put_to_fcl():
     scene = crowd(mesh_named("pumpkin-1753.ply"), "mesh", 30, 2.5, 0)
     made = Fcl("grid")
-    made.hull_axis = False
+    made.stages = {"hull_axis": False}
     made.load(scene)
     answer = made.pairs(scene.bodies.positions, scene.bodies.quaternions)
     assert answer.tolist() == pairs(scene)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import random
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -81,7 +82,7 @@ class Killed:
         return subprocess.Popen(
             [sys.executable, "-m", "harness", "sweep", "kill.yaml", "--db", "kill.db", "--verbose", *options],
             cwd=self.folder, env=os.environ | {MARK: self.mark, "PYTHONPATH": path}, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True, preexec_fn=heed_ctrl_c,
         )  # fmt: skip
 
     def kill_once(self) -> int:
@@ -166,6 +167,11 @@ class Killed:
                 return False
             time.sleep(0.05)
         return True
+
+
+def heed_ctrl_c() -> None:
+    """What a shell starts in the background ignores Ctrl-C, and so would all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def main(kills: int) -> None:

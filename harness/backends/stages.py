@@ -1,0 +1,87 @@
+"""Stages of a pipeline: each kept or left out for a reason, and forced the other way only where no answer changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from harness.errors import InputError
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a pipeline: kept or left out, and why."""
+
+    name: str
+    kept: bool
+    why: str
+
+
+class StageError(InputError):
+    """A stage that cannot be forced; `stage` is its name."""
+
+    def __init__(self, stage: str, message: str) -> None:
+        super().__init__(f"stages: {message}")
+        self.stage = stage
+        self.message = message
+
+
+class Decisions:
+    """Decides on one stage after another, in the order of the pipeline.
+
+    Parameters
+    ----------
+    forced : stages forced on (True) or off (False), for an ablation
+    """
+
+    def __init__(self, forced: Mapping[str, bool] | None = None) -> None:
+        self.stages: list[Stage] = []
+        self._forced = dict(forced or {})
+
+    def take(self, name: str, kept: bool, why: str, *, fixed: str | None = None) -> bool:
+        """Decide on a stage.
+
+        Parameters
+        ----------
+        name : of the stage
+        kept, why : what its scene needs, and the reason
+        fixed : what would go wrong the other way; None where forcing it only changes the cost
+
+        Returns
+        -------
+        bool
+            Whether the stage is kept.
+
+        Raises
+        ------
+        StageError
+            If it is forced the other way, and that would change an answer.
+        """
+        wanted = self._forced.get(name, kept)
+        if wanted != kept:
+            if fixed is not None:
+                raise StageError(name, f"{name} cannot be forced {_state(wanted)}: {fixed}")
+            why = f"forced {_state(wanted)} by engine.stages; it would be {'kept' if kept else 'left out'}: {why}"
+        self.stages.append(Stage(name, wanted, why))
+        return wanted
+
+    def finish(self) -> tuple[Stage, ...]:
+        """All stages.
+
+        Raises
+        ------
+        StageError
+            If one is forced that does not exist.
+        """
+        names = [stage.name for stage in self.stages]
+        for name in self._forced:
+            if name not in names:
+                near = get_close_matches(name, names, 1)
+                hint = f'did you mean "{near[0]}"?' if near else f"there are {', '.join(names)}"
+                raise StageError(name, f'this pipeline has no stage "{name}"; {hint}')
+        return tuple(self.stages)
+
+
+def _state(kept: bool) -> str:
+    return "on" if kept else "off"

@@ -1,0 +1,76 @@
+"""How far bodies can get: bounds from speeds and energy that hold whatever they hit, so that a test can be left out.
+
+A wall and a hit of response `reflect` keep every speed. Elastic hits keep the energy or take some of it, so that no
+body is ever faster than if it had all of it: v <= sqrt(2 E / m).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.arrays import Floats
+from harness.broadphase.hierarchical_grid import HierarchicalGrid
+from harness.measure.conservation import energy
+from harness.motion.response import Response
+from harness.scene.scene import Scene
+
+# Relative room for rounding: of poses, of the energy, and of vertices that stick out of their bounding sphere.
+SLACK = 1e-9
+
+
+def nobody_meets(scene: Scene, duration: float) -> bool:
+    """Whether it is certain that no two bounding spheres come to touch.
+
+    Until two of them do, every speed stays what it is, so that body i stays within |v_i| `duration` of its start. Where
+    the spheres that it can reach are disjoint, nobody meets. They are not looked at where they are so large that they
+    cannot all be disjoint.
+
+    Parameters
+    ----------
+    scene : Scene
+    duration : s
+
+    Returns
+    -------
+    bool
+    """
+    bodies = scene.bodies
+    reach = (bodies.radii + np.linalg.norm(bodies.velocities, axis=1) * duration) * (1.0 + SLACK)
+    if not np.isfinite(reach).all() or (bodies.radii >= scene.box.half.min()).any():
+        return False  # a path without room in the box is no straight line
+    room = np.prod(2.0 * (scene.box.half + reach.max()))
+    if 4.0 / 3.0 * np.pi * np.sum(reach**3) > room:
+        return False
+    return not len(HierarchicalGrid(reach, scene.box).close_pairs(bodies.positions))
+
+
+def walls_are_out_of_reach(scene: Scene, duration: float, response: Response, *, alone: bool) -> bool:
+    """Whether it is certain that no bounding sphere comes to touch a wall.
+
+    Parameters
+    ----------
+    scene : Scene
+    duration : s
+    response : {"reflect", "elastic"}
+    alone : whether no two bodies meet, so that every one flies straight on
+    """
+    bodies = scene.bodies
+    speeds = np.abs(bodies.velocities) if alone else fastest(scene, response)[:, None]
+    farthest = np.abs(bodies.positions) + bodies.radii[:, None] + speeds * duration
+    return bool((farthest * (1.0 + SLACK) < scene.box.half).all())
+
+
+def fastest(scene: Scene, response: Response) -> Floats:
+    """(n,) m/s: a speed that each body never exceeds."""
+    bodies = scene.bodies
+    if response == "elastic":
+        bound: Floats = np.sqrt(2.0 * energy(bodies.velocities, bodies.masses) / bodies.masses)
+    else:
+        bound = np.linalg.norm(bodies.velocities, axis=1)
+    return bound * (1.0 + SLACK)
+
+
+def nobody_moves(scene: Scene) -> bool:
+    """Whether every body rests and keeps its orientation, so that every frame looks the same."""
+    bodies = scene.bodies
+    return not bodies.velocities.any() and (scene.shape == "sphere" or not bodies.spins.any())
