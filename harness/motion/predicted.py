@@ -14,6 +14,7 @@ from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.measure.clocks import Clock
 from harness.measure.conservation import Conservation, energy
 from harness.measure.kinetics import Kinetics
+from harness.motion.course import CourseLog
 from harness.motion.hits import Outcome, Trace
 from harness.motion.plan import Plan
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
@@ -33,6 +34,7 @@ def fly_predicted(
     response: Response,
     restitution: float = 1.0,
     traced: bool = False,
+    recorded: bool = False,
 ) -> Outcome:
     """Fly spheres for `duration` (s), event by event.
 
@@ -43,6 +45,7 @@ def fly_predicted(
     duration : s; what is due at that very time still happens
     response, restitution : see `harness.motion.response`
     traced : keep every event
+    recorded : keep the course of every body; the clock of such a flight sees it
 
     Returns
     -------
@@ -52,6 +55,7 @@ def fly_predicted(
     bodies = scene.bodies
     conservation, kinetics = Conservation(bodies), Kinetics(scene, response, restitution)
     depth = _Depth(scene) if plan.keeps("penetration") else None
+    course = CourseLog(bodies.positions, bodies.velocities) if recorded else None
     clock = Clock("run_seconds")
     simulation = Simulation(
         bodies.positions,
@@ -67,7 +71,11 @@ def fly_predicted(
     outside = np.zeros(len(bodies), np.bool_)
     for look in range(1, LOOKS + 1):
         clock.start()
-        simulation.advance(duration * look / LOOKS)
+        until = duration * look / LOOKS
+        if course is not None:
+            course.follow(simulation, until)
+        else:
+            simulation.advance(until)
         clock.lap("run_seconds")
         positions, velocities = simulation.positions, simulation.velocities
         conservation.observe(velocities)
@@ -93,7 +101,8 @@ def fly_predicted(
         metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
     if depth is not None:
         metrics["max_penetration"] = depth.deepest
-    return Outcome(metrics, _trace(scene, simulation, duration, counted) if traced else None)
+    trace = _trace(scene, simulation, duration, counted) if traced else None
+    return Outcome(metrics, trace, course.course() if course is not None else None)
 
 
 class _Depth:

@@ -28,6 +28,7 @@ from harness.narrowphase.gjk import MARGIN
 from harness.narrowphase.hull_pairs import HullPairs
 from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.placement import Places
+from harness.runner.recording import recording_of
 from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
 from harness.scene.bodies import Bodies
@@ -36,6 +37,7 @@ from harness.scene.hull import convex_hull
 from harness.scene.launch import place
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene, Shape
+from harness.store.recording import Recording
 
 
 @dataclass(frozen=True)
@@ -46,9 +48,12 @@ class Result:
     plan: Plan
     trace: Trace | None = None
     flights: int = 1
+    recording: Recording | None = None
 
 
-def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, traced: bool = False) -> Result:
+def execute(
+    point: Point, mesh: Mesh | None, *, memory: int | None = None, traced: bool = False, recorded: bool = False
+) -> Result:
     """Run a point once, in this process.
 
     Parameters
@@ -57,6 +62,7 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     mesh : the mesh its scene names
     memory : B that the scene may need
     traced : keep every hit
+    recorded : keep what a replay shows; the clocks of such a run see it
 
     Raises
     ------
@@ -67,17 +73,18 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     clock = Clock("setup_seconds")
     scene = build_scene(point, mesh, memory)
     plan = plan_of(point, scene)
-    fly = _flight(point, scene, plan, traced)
+    fly = _flight(point, scene, plan, traced=traced or recorded, recorded=recorded)
     clock.lap("setup_seconds")
-    outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
+    outcome, flights = (fly(), 1) if traced or recorded else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
-    return Result(metrics, plan, outcome.trace, flights)
+    return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome) if recorded else None)
 
 
-def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[], Outcome]:
+def _flight(point: Point, scene: Scene, plan: Plan, *, traced: bool, recorded: bool) -> Callable[[], Outcome]:
     """One flight of the scene, from its start, whenever it is called; what it needs is loaded."""
     motion = point.motion
-    answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
+    answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution}
+    answers |= {"traced": traced, "recorded": recorded}
     if point.engine.algorithm == "predictive":
         return partial(fly_predicted, scene, plan, duration=motion.duration, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None

@@ -24,13 +24,14 @@ METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to do: a repeat of a point, for the first experiment that lists it; or its control."""
+    """One run to do: a repeat of a point, for the first experiment that lists it; or its control, or its recording."""
 
     experiment: Experiment
     point: Point
     key: str
     repeat: int
     control: bool = False
+    recorded: bool = False
 
 
 @dataclass(frozen=True)

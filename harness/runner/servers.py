@@ -80,10 +80,11 @@ def task_of(
     *,
     traced: bool = False,
     pinned: bool = False,
+    recorded: bool = False,
 ) -> tuple[Task, Mesh | None]:
     """A run of a point under the limits of its experiment, and the mesh that it needs."""
     mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
-    return Task(point, mesh.digest if mesh else None, limits.timeout, limits.memory, traced, pinned), mesh
+    return Task(point, mesh.digest if mesh else None, limits.timeout, limits.memory, traced, pinned, recorded), mesh
 
 
 def mesh_of(experiment: Experiment, point: Point, meshes: Mapping[Path, Mesh]) -> Mesh | None:
