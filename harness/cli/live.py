@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -43,6 +44,7 @@ def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -
     experiment, meshes : loaded and opened; its first point is what the page begins with
     show : opens an address
     """
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell has started it in the background
     settings = _settings(experiment, meshes)
     with Servers() as servers:
 

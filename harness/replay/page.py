@@ -36,7 +36,9 @@ class Setting(NamedTuple):
     inputmode: str = "decimal"
 
 
-def replay_page(recording: Recording, title: str, facts: Sequence[Fact] = (), back: str = "") -> str:
+def replay_page(
+    recording: Recording, title: str, facts: Sequence[Fact] = (), *, back: str = "", picture: str = ""
+) -> str:
     """The replay as one HTML file.
 
     Parameters
@@ -45,13 +47,19 @@ def replay_page(recording: Recording, title: str, facts: Sequence[Fact] = (), ba
     title : its heading
     facts : names and values to stand beside it
     back : a link to the page that it belongs to, if there is one
+    picture : the still of it as `still_text` gives it, where that is at hand
     """
     text = json.dumps(document(recording, title, facts), ensure_ascii=False, separators=(",", ":"))
     text = text.replace("<", "\\u003c")  # so that nothing in it ends the script element
-    picture = base64.b64encode(still(recording)).decode("ascii")
+    picture = picture or still_text(recording)
     return _page(
         title, f"{said(recording)}.", facts, back=back, still=picture, alt=described(recording), recording=Markup(text)
     )
+
+
+def still_text(recording: Recording) -> str:
+    """The still picture, a PNG, in base64."""
+    return base64.b64encode(still(recording)).decode("ascii")
 
 
 def live_page(title: str, settings: Sequence[Setting], columns: Sequence[str]) -> str:

@@ -19,9 +19,9 @@ from harness.arrays import Floats
 from harness.replay.document import start_positions
 from harness.store.recording import Recording
 
-WIDTH, HEIGHT = 960, 600
+WIDTH, HEIGHT = 800, 500
 _FINE = 2  # painted at so many times the size
-_MOST_TRIANGLES = 60_000
+_MOST_TRIANGLES = 24_000
 _TURN, _TILT, _FIELD = 0.62, 0.42, 0.62  # as the viewer's first view, rad
 _BODY, _EDGE = np.array([224.0, 148.0, 26.0]), (141, 147, 161, 255)
 _COLOURS = 96
@@ -85,9 +85,9 @@ def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, a
     light = 0.38 + 0.14 * (normals @ axes[1]) + 0.62 * np.maximum(normals @ (lamp / np.linalg.norm(lamp)), 0.0)
     flat, depth = _on_paper(corners, eye, axes)
     order = np.argsort(-depth.mean(axis=1), kind="stable")
-    colours = np.clip(_BODY * light[:, None], 0, 255).astype(int)
+    colours = np.clip(_BODY * light[:, None], 0, 255).astype(np.int64) @ [1, 2**8, 2**16] + 255 * 2**24
     for triangle, colour in zip(flat[order].reshape(-1, 6).tolist(), colours[order].tolist(), strict=True):
-        draw.polygon(triangle, fill=(*colour, 255))
+        draw.polygon(triangle, fill=colour)
 
 
 def _form(recording: Recording) -> tuple[Floats, NDArray[Any]]:

@@ -31,6 +31,7 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.replay import Replay, replay_of
 from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
@@ -132,7 +133,8 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     claims, compared = any(record.claims for record in records), newest_comparison(database)
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
-        yield from _experiment(environment, page, elsewhere, claims, compared is not None)
+        replay = replay_of(database, page.record)
+        yield from _experiment(environment, page, elsewhere, claims, compared is not None, replay)
     yield "index.html", _index(environment, pages, records, compared is not None, machines(database))
     if compared is not None:
         yield SWEEPS, _compared(environment, compared, claims, records)
@@ -165,7 +167,12 @@ def _navigation(up: str, claims: bool, sweeps: bool, here: Link | None = None) -
 
 
 def _experiment(
-    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, sweeps: bool
+    environment: Environment,
+    page: ExperimentPage,
+    elsewhere: Sequence[Row],
+    claims: bool,
+    sweeps: bool,
+    replay: Replay | None,
 ) -> Iterator[tuple[str, str]]:
     published = published_section(page, elsewhere)
     drawn = [*page.figures, page.exponent_figure, published.figure if published else None]
@@ -185,12 +192,15 @@ def _experiment(
         page=page,
         published=published,
         verdicts=verdicts,
-        contents=_contents(page, published is not None),
+        replay=replay,
+        contents=_contents(page, published is not None, replay is not None),
         environment=[*_facts(page.record.sweep), *page.conditions],
         downloads=downloads,
         footer=_footer([page.record]),
     )
     yield f"{page.folder}/index.html", text
+    if replay is not None:
+        yield f"{page.folder}/{replay.file}", replay.page
     yield f"{page.folder}/runs.csv", page.csv
     yield f"{page.folder}/specification.yaml", page.record.source
     yield f"{page.folder}/environment.json", json.dumps(page.environment, indent=2, ensure_ascii=False) + "\n"
@@ -198,7 +208,7 @@ def _experiment(
         yield f"{page.folder}/{figure.file}", figure.document
 
 
-def _contents(page: ExperimentPage, published: bool) -> list[tuple[str, str]]:
+def _contents(page: ExperimentPage, published: bool, replay: bool) -> list[tuple[str, str]]:
     entries = (
         ("findings", "Findings", True),
         ("figures", "Figures", bool(page.figures)),
@@ -208,6 +218,7 @@ def _contents(page: ExperimentPage, published: bool) -> list[tuple[str, str]]:
         ("claims", "Claims", bool(page.record.claims)),
         ("expectations", "Expectations", bool(page.record.expectations)),
         ("published", "Published", published),
+        ("replay", "Replay", replay),
         ("plan", "Plan", bool(page.stages)),
         ("reading", "How to read", True),
         ("reproduce", "Reproduce", True),
