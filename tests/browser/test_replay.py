@@ -14,6 +14,10 @@ from harness.replay.page import replay_page
 
 pytestmark = pytest.mark.xdist_group("browser")
 
+SMALL = {"width": 900, "height": 640}  # software draws what it shows
+NO_WEBGL = """HTMLCanvasElement.prototype.getContext = ((real) => function (kind, ...rest) {
+  return kind === "webgl2" ? null : real.call(this, kind, ...rest);
+})(HTMLCanvasElement.prototype.getContext);"""
 WALLS = ("x−", "x+", "y−", "y+", "z−", "z+")
 
 
@@ -30,7 +34,7 @@ def replay(visit, pages):
     """Opens one of the pages, drawn."""
 
     def show(name="cubes", **options):
-        page = visit((pages / f"{name}.html").as_uri(), **options).page
+        page = visit((pages / f"{name}.html").as_uri(), viewport=SMALL, **options).page
         page.wait_for_selector("html.drawn")
         return page
 
@@ -64,10 +68,10 @@ def test_every_hit_stands_in_the_list_with_its_time(replay, cubes):
         page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
         rows = page.eval_on_selector_all(
             "#hits button",
-            "(rows) => rows.map((row) => [row.dataset.hit, ...[...row.children].map((e) => e.textContent)])",
+            "(rows) => rows.map((row) => [row.dataset.hit, row.children[0].textContent, row.children[1].textContent])",
         )
         found |= {int(hit): (when, who) for hit, when, who in rows}
-    assert len(cubes.hit_times) > 20
+    assert len(cubes.hit_times) > 15
     expected = [(f"{time:.3f} s", name) for time, name in zip(cubes.hit_times, names(cubes), strict=True)]
     assert [found[hit] for hit in range(len(expected))] == expected
 
@@ -172,8 +176,11 @@ def test_bodies_are_drawn_and_those_that_hit_are_marked(replay, cubes):
     assert 0.01 < share(first, lambda r, g, b: (r > 1.5 * b) & (r > g)) < 0.6  # orange
     assert share(first, lambda r, g, b: (b > 1.6 * r) & (b > 90)) < 0.001
     pair = int(np.flatnonzero(cubes.hit_walls < 0)[0])
-    page.evaluate("(time) => { const e = document.getElementById('time'); e.value = time; e.dispatchEvent(new Event('input')); }",
-                  cubes.hit_times[pair])  # fmt: skip
+    page.eval_on_selector(
+        "#time",
+        "(slider, time) => { slider.value = time; slider.dispatchEvent(new Event('input')); }",
+        cubes.hit_times[pair],
+    )
     time_of(page)
     assert share(page.locator("#stage").screenshot(), lambda r, g, b: (b > 1.6 * r) & (b > 90)) > 0.002  # blue
 
@@ -191,9 +198,7 @@ def test_it_plays_by_itself_only_where_motion_is_welcome(visit, pages):
 
 
 def test_without_webgl_there_are_a_sentence_a_still_and_the_list(visit, pages, cubes):
-    nothing = "HTMLCanvasElement.prototype.getContext = ((old) => function (kind, ...rest) {" \
-              " return kind === 'webgl2' ? null : old.call(this, kind, ...rest); })(HTMLCanvasElement.prototype.getContext)"  # fmt: skip
-    page = visit((pages / "cubes.html").as_uri(), script=nothing).page
+    page = visit((pages / "cubes.html").as_uri(), script=NO_WEBGL).page
     assert page.get_by_text("This browser draws no WebGL2").is_visible()
     assert page.locator(".picture img").is_visible()
     page.click("#after")
