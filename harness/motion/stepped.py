@@ -15,6 +15,7 @@ from harness.arrays import Flags, Ints, Pairs
 from harness.backends.protocol import Backend, counters
 from harness.measure.clocks import Clock
 from harness.measure.conservation import energy
+from harness.motion.course import CourseLog, folded_course
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Flight
 from harness.motion.observer import Folds, Observer, Onsets
@@ -60,6 +61,7 @@ def fly_stepped(
     response: Response,
     restitution: float = 1.0,
     traced: bool = False,
+    recorded: bool = False,
 ) -> Outcome:
     """Fly a scene in frames at k dt, k = 1 … frames.
 
@@ -71,6 +73,7 @@ def fly_stepped(
     frames, dt : number and length (s) of the frames
     response, restitution : see `harness.motion.response`
     traced : keep every hit
+    recorded : keep the course of every body
 
     Returns
     -------
@@ -80,8 +83,9 @@ def fly_stepped(
     flight = Flight(scene.bodies, scene.box, folded=response == "none", turning=plan.keeps("orientations"))
     observer = Observer(scene, flight, penetration=plan.keeps("penetration"), traced=traced)
     answers = None if response == "none" else Answers(scene.bodies.masses, response, restitution)
+    course = CourseLog(flight.positions, flight.velocities) if recorded and answers else None
     steps = _steps(scene, plan, flight, backend, answers)
-    look = _look(observer, flight, answers)
+    look = _look(observer, flight, answers, course)
     clock = Clock(*PHASES)
 
     def fly(number: int) -> _Frame:
@@ -117,7 +121,10 @@ def fly_stepped(
         **_clock_metrics(clock, frames, end),
         **_errors(observer, answers, plan),
     }
-    return Outcome(metrics, _trace(scene, flight, observer, end, counted) if traced else None)
+    trace = _trace(scene, flight, observer, end, counted) if traced else None
+    if course is not None:
+        return Outcome(metrics, trace, course.course())
+    return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
 
 
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
@@ -167,7 +174,9 @@ def _steps(scene: Scene, plan: Plan, flight: Flight, backend: Backend | None, an
     return [*steps, ("response_seconds", respond), ("box_seconds", walls_and_redirect)]
 
 
-def _look(observer: Observer, flight: Flight, answers: Answers | None) -> Callable[[_Frame], None]:
+def _look(
+    observer: Observer, flight: Flight, answers: Answers | None, course: CourseLog | None
+) -> Callable[[_Frame], None]:
     """What is done with a frame after it, outside of all clocks."""
 
     def answered(frame: _Frame) -> None:
@@ -177,9 +186,19 @@ def _look(observer: Observer, flight: Flight, answers: Answers | None) -> Callab
         observer.frame(frame.time, frame.pairs, onsets.of(frame.pairs), folds.by(frame.time))
 
     if answers is not None:
-        return answered
+        return answered if course is None else _recorded(answered, course, flight)
     onsets, folds = Onsets(len(flight.positions)), Folds(flight)
     return passing
+
+
+def _recorded(look: Callable[[_Frame], None], course: CourseLog, flight: Flight) -> Callable[[_Frame], None]:
+    """The same, and the legs that begin in the frame are kept."""
+
+    def look_and_keep(frame: _Frame) -> None:
+        look(frame)
+        course.turn(frame.time, flight.positions, flight.velocities)
+
+    return look_and_keep
 
 
 def _stand(fly: Callable[[int], _Frame], frames: int, observer: Observer, backend: Backend | None) -> dict[str, float]:
