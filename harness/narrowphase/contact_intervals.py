@@ -15,9 +15,9 @@ import numpy as np
 from harness.arrays import Floats
 from harness.kernel import kernel
 from harness.narrowphase.advancement import IMPACT, NEVER, STALLED, Motion, orientation, place, seen_at, time_of_impact
-from harness.narrowphase.crossing import CROSSING, DEPTH, find_crossing, triangle_a, triangle_b
+from harness.narrowphase.crossing import DEPTH
 from harness.narrowphase.gjk import MARGIN, NO_SEEDS, OVERLAP, hull_distance, relative_pose
-from harness.narrowphase.lasting_contact import crossing_lasts, overlap_lasts
+from harness.narrowphase.lasting_contact import lasting_crossing, overlap_lasts
 from harness.narrowphase.mesh_advancement import NO_START, MeshShape, time_of_mesh_impact
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.surface_distance import surface_distance
@@ -34,6 +34,8 @@ PARTED_GAP, RESOLUTION = 1.125, 0.125
 LEVELS_UP = 4
 NEARBY_STEPS = 200
 STEPS = 100_000
+# Of the time for which the last crossing lasted: the next one is to last as long, if one can be found.
+LESS = 0.5
 
 
 class Parting(NamedTuple):
@@ -178,29 +180,24 @@ def end_of_mesh_contact(
     near = PARTED_GAP * max(tolerance, 8.0 * margin)
     tree_a, tree_b, stack = shape_a.tree, shape_b.tree, np.empty((DEPTH, 2), np.int64)
     a, b = seen_at(a, b, begin)
-    speed, rest, now, leaf_a, leaf_b = fastest_passing(a, b), end - begin, 0.0, 0, 0
+    speed, rest, now, start, enough = fastest_passing(a, b), end - begin, 0.0, (0, 0), 0.0
     for look in range(1, MOST_LOOKS + 1):
         turn = orientation(a, now)
         pose = relative_pose(turn, a.size, orientation(b, now), b.size, place(b, now))
-        start_a, start_b = leaf_a, leaf_b
         for _ in range(LEVELS_UP):
-            start_a, start_b = tree_a.parent[start_a], tree_b.parent[start_b]
-        most = NEARBY_STEPS if start_a + start_b > 0 else STEPS
-        verdict, one, other = find_crossing(tree_a, tree_b, pose, start_a, start_b, margin, most, stack)
-        if verdict != CROSSING and start_a + start_b > 0:
-            verdict, one, other = find_crossing(tree_a, tree_b, pose, 0, 0, margin, STEPS, stack)
-        if verdict == CROSSING:
-            leaf_a, leaf_b = one, other
-            face_a, face_b = (
-                triangle_a(tree_a, pose, -1 - tree_a.right[one]),
-                triangle_b(tree_b, pose, -1 - tree_b.right[other]),
-            )
-            wait, left = crossing_lasts(face_a, face_b, pose, turn, a, b), near
-        else:
+            start = tree_a.parent[start[0]], tree_b.parent[start[1]]
+        wait, leaves = lasting_crossing(tree_a, tree_b, pose, turn, a, b, start, enough, NEARBY_STEPS, stack)
+        if wait < enough:
+            others, found = lasting_crossing(tree_a, tree_b, pose, turn, a, b, (0, 0), enough, STEPS, stack)
+            if others > wait or leaves[0] < 0:
+                wait, leaves = others, found
+        left, enough = near, LESS * wait
+        if leaves[0] < 0:
             gap, one, other = surface_distance(tree_a, tree_b, pose, near, margin, stack)
             if gap == np.inf:
                 return Parting(PARTED, begin + now, look)
-            wait, left, leaf_a, leaf_b = 0.0, near - gap, one, other
+            left, leaves = near - gap, (one, other)
+        start = leaves
         wait = max(wait, max(left, RESOLUTION / PARTED_GAP * near) / speed)
         if now + wait >= rest:
             return Parting(NEVER, end, look)
@@ -223,5 +220,6 @@ def with_room(intervals: Floats, count: int) -> Floats:
     if count < len(intervals):
         return intervals
     longer = np.empty((2 * count, 2))
-    longer[:count] = intervals
+    for k in range(count):
+        longer[k, 0], longer[k, 1] = intervals[k, 0], intervals[k, 1]
     return longer

@@ -11,17 +11,89 @@ from math import sqrt
 
 import numpy as np
 
+from harness.arrays import Ints
 from harness.kernel import kernel
 from harness.narrowphase.advancement import Motion
-from harness.narrowphase.gjk import Relative, Seeds, difference, farthest, vertex_a, vertex_b
+from harness.narrowphase.crossing import CROSSING, meeting, nearness, placed_a, placed_b, triangle_a, triangle_b
+from harness.narrowphase.gjk import MARGIN, Relative, Seeds, difference, farthest, vertex_a, vertex_b
 from harness.narrowphase.simplex import room_around_origin
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.triangle_distance import Triangle
+from harness.narrowphase.triangle_tree import TriangleTree
 from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, scaled, turned_back
 
 # Halvings of a time until the proof succeeds, and rounds of making a tetrahedron roomier.
 HALVINGS = 40
 ROUNDS = 10
+# Crossing triangles among which the ones that cross longest are chosen, where none do for long enough.
+TRIALS = 6
+
+
+@kernel
+def lasting_crossing(
+    tree_a: TriangleTree,
+    tree_b: TriangleTree,
+    pose: Relative,
+    turn: Matrix,
+    a: Motion,
+    b: Motion,
+    start: tuple[int, int],
+    enough: float,
+    most: int,
+    stack: Ints,
+) -> tuple[float, tuple[int, int]]:
+    """Of the parts of two surfaces below two nodes: triangles that cross, and for how long they go on to, s.
+
+    Parameters
+    ----------
+    tree_a, tree_b : TriangleTree
+    pose : Relative
+    turn : of the axes of a
+    a, b : Motion
+    start : the nodes
+    enough : s; the search ends at triangles that cross for so long, or else with the best of `TRIALS`
+    most : pairs of nodes to look at
+    stack : (DEPTH, 2) int array, written
+
+    Returns
+    -------
+    0 and (-1, -1) if none were found to cross, which proves nothing; else the time and the leaves.
+    """
+    longest, leaves, trials = 0.0, (-1, -1), 0
+    margin = MARGIN * (pose.size_a + pose.size_b)
+    stack[0, 0], stack[0, 1] = start
+    height, steps = 1, 0
+    while height > 0 and steps < most:
+        steps += 1
+        height -= 1
+        node_a, node_b = stack[height, 0], stack[height, 1]
+        right_a, right_b = tree_a.right[node_a], tree_b.right[node_b]
+        if right_a < 0 and right_b < 0:
+            one, other = triangle_a(tree_a, pose, -1 - right_a), triangle_b(tree_b, pose, -1 - right_b)
+            if meeting(one, other, margin) == CROSSING:
+                time = crossing_lasts(one, other, pose, turn, a, b)
+                trials += 1
+                if time > longest or leaves[0] < 0:
+                    longest, leaves = time, (node_a, node_b)
+                if longest >= enough or trials == TRIALS:
+                    break
+            continue
+        larger_a = right_a >= 0 and tree_a.discs[node_a, 3] * pose.size_a >= tree_b.discs[node_b, 3] * pose.size_b
+        if right_b < 0 or larger_a:
+            a0, b0, a1, b1 = node_a + 1, node_b, right_a, node_b
+        else:
+            a0, b0, a1, b1 = node_a, node_b + 1, node_a, right_b
+        near0 = nearness(placed_a(tree_a, pose, a0), placed_b(tree_b, pose, b0), margin)
+        near1 = nearness(placed_a(tree_a, pose, a1), placed_b(tree_b, pose, b1), margin)
+        if near0 > near1:  # the deeper one goes on top
+            a0, b0, near0, a1, b1, near1 = a1, b1, near1, a0, b0, near0
+        if near1 < 1.0:
+            stack[height, 0], stack[height, 1] = a1, b1
+            height += 1
+        if near0 < 1.0:
+            stack[height, 0], stack[height, 1] = a0, b0
+            height += 1
+    return longest, leaves
 
 
 @kernel

@@ -145,7 +145,7 @@ def time_of_mesh_impact(
         never = max(never, hulls.time)  # which is inf if they never do
         return MeshImpact(NEVER, never, 0.0, hulls.axis, Start(hulls.seeds, start.leaves), hulls.steps)
     verdict, time, gap, axis, leaves, steps = first_touch(
-        shape_a.tree, shape_b.tree, a, b, hulls.time, rest, tolerance, margin
+        shape_a.tree, shape_b.tree, a, b, hulls.time, rest, tolerance, margin, start.leaves
     )
     time = never if verdict == NEVER else min(end, begin + (entry + time))
     return MeshImpact(verdict, time, gap, axis, Start(hulls.seeds, leaves), hulls.steps + steps)
@@ -183,6 +183,7 @@ def first_touch(
     end: float,
     tolerance: float,
     margin: float,
+    leaves: tuple[int, int],
 ) -> tuple[int, float, float, Vector, tuple[int, int], int]:
     """Search the trees of two bodies as `seen_at` gives them; returns what MeshImpact holds."""
     # Steps end a little before contact, where the axis of the gap can still be told from rounding.
@@ -191,9 +192,15 @@ def first_touch(
     rates = sqrt(dot(a.spin, a.spin)), sqrt(dot(b.spin, b.spin))
     stack = np.empty((DEPTH, 2), np.int64)
     clocks, pairs = np.empty(64), np.empty(64, np.int64)
-    verdict, until, gap, axis, leaves = NEVER, end, 0.0, (0.0, 0.0, 0.0), (-1, -1)
+    verdict, until, gap, axis = NEVER, end, 0.0, (0.0, 0.0, 0.0)
     clocks[0], pairs[0] = begin, 0
     waiting, steps = 1, 0
+    if leaves[0] >= 0:
+        k, m = -1 - tree_a.right[leaves[0]], -1 - tree_b.right[leaves[1]]
+        likely = impact_of_triangles(tree_a, tree_b, k, m, a, b, begin, until, near, aim, margin)
+        steps += likely[4]
+        if likely[0] == IMPACT:
+            verdict, until, gap, axis = IMPACT, likely[1], likely[2], likely[3]
     while waiting > 0 and clocks[0] < until:
         now, pair = clocks[0], pairs[0]
         waiting -= 1

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from harness.narrowphase.advancement import IMPACT, NEVER, time_of_impact
+from harness.narrowphase.advancement import IMPACT, NEVER, attitude, place, time_of_impact
 from harness.narrowphase.gjk import NO_SEEDS
 from harness.narrowphase.mesh_advancement import NO_START, MeshShape, time_of_mesh_impact
 from harness.narrowphase.support import support_map
@@ -103,3 +103,51 @@ def test_surfaces_meet_no_earlier_than_their_hulls(seed, name):
     hulls, surfaces = time_of_impact(hull, hull, a, b, 0.0, 3.0, 1e-9, NO_SEEDS), impact(a, b, name, end=3.0)
     assert surfaces.time >= hulls.time - 1e-8
     assert surfaces.verdict <= hulls.verdict
+
+
+@pytest.mark.parametrize("rate", [0.0, 5.0])
+def test_a_cube_inside_a_hollow_one_strikes_the_wall_while_the_centres_part(rate):
+    small, speed, start = 0.4, 0.2, 0.02
+    a, b = body(), body((start, 0.01, 0.0), (speed, 0, 0), spin=(0, 0, rate), size=small)
+
+    def gap(t):
+        reach = small * WIDTH / 2 * (abs(np.cos(rate * t)) + abs(np.sin(rate * t)))
+        return WIDTH / 2 - start - speed * t - reach
+
+    times = np.linspace(0, 2, 200_001)
+    after = np.argmax(gap(times) <= 0)
+    expected = brentq(gap, times[after - 1], times[after], xtol=1e-14)
+    found = impact(a, b, tolerance=1e-10)
+    assert found.verdict == IMPACT
+    assert found.time == pytest.approx(expected, abs=1e-8)
+    assert found.time <= expected
+    assert impact(a, b, end=0.99 * expected).verdict == NEVER  # inside, and not touching
+
+
+def test_surfaces_that_cross_at_the_beginning_touch_then_and_those_that_fly_apart_never_do():
+    assert impact(body(), body((0.3, 0.1, 0.2)), begin=2.0)[:2] == (IMPACT, 2.0)
+    assert impact(body(), body((5, 0, 0), (1.0, 0, 0)))[:2] == (NEVER, np.inf)
+    assert impact(body(), body((5, 0.1, 0), (-1.0, 0, 0)), end=2.0)[:2] == (NEVER, 2.0)
+    assert impact(body(), body((5, 2.0, 0), (-1.0, 0, 0), spin=(1, 2, 3)))[:2] == (NEVER, np.inf)
+
+
+def test_a_search_from_where_another_ended_finds_the_same():
+    for seed in range(20):
+        a, b = encounter(seed, 3.0, apart=(1.0, 1.5))
+        first = impact(a, b, "pumpkin-1753.ply", end=3.0, tolerance=1e-8)
+        again = impact(a, b, "pumpkin-1753.ply", end=3.0, tolerance=1e-8, start=first.start)
+        assert again.verdict == first.verdict
+        assert again.time == pytest.approx(first.time, abs=1e-6)
+
+
+def test_late_times_lose_no_more_digits_than_the_clock_has():
+    late = 1e5
+    a, b = body(spin=(0.3, 1, 2)), body((3, 0.2, 0.1), (-1.0, 0, 0), spin=(1, -2, 0))
+    early = impact(a, b, tolerance=1e-9)
+    moved = [
+        m._replace(position=tuple(p - late * v for p, v in zip(m.position, m.velocity, strict=True))) for m in (a, b)
+    ]
+    turned = [m._replace(quaternion=attitude(m, -late)) for m in moved]
+    found = impact(*turned, begin=late, tolerance=1e-9)
+    assert found.verdict == IMPACT
+    assert found.time - late == pytest.approx(early.time, abs=1e-8)
