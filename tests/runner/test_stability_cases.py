@@ -23,7 +23,7 @@ SHORTER = {
     "billion-seconds": {"count": 3},
     "dense-packing": {"algorithm": ["grid", "predictive", "predictive"], "backend": "fcl", "duration": 0.02},
     "energy-momentum": {"duration": 2, "count": 20},
-    "fast-spin": {"duration": 0.05, "shape": "hull"},
+    "fast-spin": {"duration": 0.5},
     "inelastic-collapse": {"duration": 4},
     "long-step": {"duration": 20},
     "no-room": {"duration": 0.01},
