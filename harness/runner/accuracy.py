@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -23,9 +24,10 @@ from harness.motion.replayed import contacts_of, error_of
 from harness.runner.key import sources_hash
 from harness.runner.reference_cache import kept
 from harness.runner.setting import build_scene
+from harness.runner.trial import trial_scene
 from harness.scene.box import Box
 from harness.scene.mesh import Mesh
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Shape
 
 # Times at which the positions of two motions are compared, and positions that are held for it in all.
 LOOKS, MOST_POSITIONS = 256, 2**21
@@ -153,12 +155,13 @@ def _both(reference: Point, scene: Scene, fly: Fly) -> dict[str, Any]:
     }
 
 
-def warm_up(scene: Scene) -> None:
-    """Compile what `errors` needs, on a scene of two spheres."""
-    contacts = contacts_of(scene, 1.0, 0.0)
+@cache
+def warm_up(shape: Shape) -> None:
+    """Compile what `errors` needs for references of this shape, once; no run's time limit should see it."""
+    scene = trial_scene(shape)
+    contacts = contacts_of(scene, 1.0, 1e-6)
     match(contacts, contacts.onset, contacts.pairs[contacts.encounter], 1.0)
-    walls = np.full(len(contacts), -1)
-    events = (contacts.onset, contacts.pairs, walls)
+    events = (contacts.onset, contacts.pairs[contacts.encounter], np.full(len(contacts), -1))
     first_divergence(len(scene.bodies), *events, *events)
     trace = Trace(*events, 1.0, scene.bodies.positions, scene.bodies.velocities, 0.0, {})
     positions_at(np.ones(1), scene.bodies, trace, "elastic", 1.0)

@@ -31,9 +31,7 @@ from harness.narrowphase.placement import Places
 from harness.runner import accuracy
 from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
-from harness.scene.bodies import Bodies
-from harness.scene.box import Box
-from harness.scene.hull import convex_hull
+from harness.runner.trial import trial_scene
 from harness.scene.launch import place
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene, Shape
@@ -123,27 +121,18 @@ def plan_of(point: Point, scene: Scene) -> Plan:
 @cache
 def warm_up() -> None:
     """Compile every kernel, or load it from numba's cache, so that no clock of a run sees it."""
-    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(12)
-    hull = convex_hull(corners)
-    mesh = Mesh("tetrahedron", hull.vertices, hull.faces, hull, "", watertight=True, convex=True)
-    bodies = Bodies(
-        positions=np.array([[-0.6, 0, 0], [0.6, 0, 0]]),
-        velocities=np.array([[1.0, 1, 1], [-1, -1, -1]]),
-        quaternions=np.tile([1.0, 0, 0, 0], (2, 1)),
-        spins=np.ones((2, 3)),
-        sizes=np.ones(2),
-        masses=np.ones(2),
-    )
+    trial = trial_scene("mesh")
+    mesh, bodies, box = trial.mesh, trial.bodies, trial.box
+    assert mesh is not None
     shapes: tuple[Shape, ...] = ("sphere", "hull")
     responses: tuple[Response, ...] = ("reflect", "elastic", "none")
-    box = Box(np.full(3, 1.2))
     simulation.warm_up()
     place(bodies.radii, box, np.random.default_rng(0), overlap=False)
     grid = Grid(bodies.radii, box)
     close = grid.close_pairs(bodies.positions)
     grid.cells_per_body()
     placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
-    HullPairs(hull, MARGIN).settle(close, placement)
+    HullPairs(mesh.hull, MARGIN).settle(close, placement)
     MeshPairs(mesh).settle(close, placement)
     Containment(mesh).contained(np.array([[0, 1]]), placement)
     for shape in shapes:
@@ -151,7 +140,6 @@ def warm_up() -> None:
         for response in responses:
             plan = make_plan(scene, backend="", algorithm="native", response=response)
             fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
-    accuracy.warm_up(Scene("sphere", None, bodies, box))
     scene = Scene("hull", mesh, bodies, box)
     fly_predicted(
         scene,

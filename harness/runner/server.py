@@ -16,6 +16,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from harness.backends import registry
+from harness.runner import accuracy
 from harness.runner.execute import warm_up
 from harness.runner.isolation import adopt_orphans, die_with_parent, run_isolated
 from harness.scene.mesh import Mesh
@@ -55,6 +56,8 @@ def _serve(channel: Connection) -> None:
         if isinstance(received, Mesh):
             meshes[received.digest] = received
             continue
+        if (reference := received.point.reference) is not None:
+            accuracy.warm_up(reference.shape)
         report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
         if report is None:
             return
