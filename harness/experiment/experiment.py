@@ -82,6 +82,12 @@ class Experiment:
         """How many runs it takes."""
         return len(self.points) * self.measure.repeats
 
+    @property
+    def metrics(self) -> frozenset[str]:
+        """The metrics that its expectations, claims and report name."""
+        named = {row.metric for row in (*self.expect, *self.claims)}
+        return frozenset(named.union(self.report.y if self.report else ()))
+
     def problem(self, path: Sequence[str | int], message: str) -> Problem:
         """A problem with the value at a key path of the file, such as ('scene', 'mesh')."""
         return self.document.problem(path, message)

@@ -135,4 +135,5 @@ class MeasureSpec(Declared):
     memory: Bytes = Field(4 * 1024**3, description="a run may take this much, bytes or text such as 4GiB")
     tier: Literal["default", "long"] = Field("default", description="long: only with `harness sweep --long`")
     max_runs: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(10_000, description="more runs than this are refused")
+    compare: Switch = Field(False, description="hold the backends of the points against each other, after the runs")
     reference: ReferenceSpec | None = Field(None, description="measure errors against such a run")

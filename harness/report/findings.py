@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from harness.measure.noise import told_apart
 from harness.measure.statistics import CONFIDENCE, NOISY_ABOVE, Summary
+from harness.report.criteria import refusals
 from harness.report.crossings import crossing_sentences
 from harness.report.quantity import exponent_text, number, plural, quantity
 from harness.report.ranking import Growth, Ranked, rank, times_worse
@@ -60,7 +61,9 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
         for row in record.expectations
         if row.verdict != "holds"
     ]
-    return Findings(tuple(sentences), (*failures, *_failed_runs(arrangement)), tuple(_warnings(record, arrangement)))
+    return Findings(
+        tuple(sentences), (*failures, *_failed_runs(record, arrangement)), tuple(_warnings(record, arrangement))
+    )
 
 
 def stability(arrangement: Arrangement) -> str:
@@ -224,9 +227,12 @@ def _single(arrangement: Arrangement) -> list[Markup]:
     return [Markup("{}.").format(Markup(", ").join(parts))] if parts else []
 
 
-def _failed_runs(arrangement: Arrangement) -> list[Markup]:
+def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
     ended = Counter(str(status) for cell in arrangement.cells for status in cell.runs["status"])
-    total, good = sum(ended.values()), ended.pop("ok", 0)
+    refused = sum(refusals(record, cell.runs) for cell in arrangement.cells)
+    total, good = sum(ended.values()), ended.pop("ok", 0) + refused
+    ended["rejected"] -= refused
+    ended = +ended
     found = []
     if total > good:
         kinds = ", ".join(f"{number(count)} {status}" for status, count in sorted(ended.items()))

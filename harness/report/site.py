@@ -33,6 +33,7 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.stability import MEANINGS, SIGNS, Matrix, is_case, matrix
 from harness.report.summary import summary
 from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
@@ -40,8 +41,8 @@ from harness.report.sweeps import summary as comparison_summary
 from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
 from harness.store.tables import conditions, controls, experiments, machines, runs
 
-SWEEPS, ACCURACY = "sweeps.html", "accuracy.html"
-TITLES = {SWEEPS: "Sweeps compared", ACCURACY: "Error against run time"}
+SWEEPS, STABILITY, ACCURACY = "sweeps.html", "stability.html", "accuracy.html"
+TITLES = {ACCURACY: "Error against run time", STABILITY: "Stability", SWEEPS: "Sweeps compared"}
 
 
 @dataclass(frozen=True)
@@ -139,16 +140,20 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     ]
     environment = _environment()
     rows = {page.record.name: page.published for page in pages}
-    claims, compared = any(record.claims for record in records), newest_comparison(database)
-    accuracy = sections(pages)
-    present = ((ACCURACY, bool(accuracy)), (SWEEPS, compared is not None))
+    # claims of the cases of stability stand in their matrix, where they say how far a method falls short
+    claims = any(page.record.claims for page in pages if not is_case(page))
+    compared = newest_comparison(database)
+    accuracy, stability = sections(pages), matrix(pages)
+    present = ((ACCURACY, bool(accuracy)), (STABILITY, stability is not None), (SWEEPS, compared is not None))
     further = [file for file, there in present if there]
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
         yield from _experiment(environment, page, elsewhere, claims, further)
-    yield "index.html", _index(environment, pages, records, further, machines(database), accuracy)
+    yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
     if accuracy:
         yield from _accuracy(environment, accuracy, claims, further, records)
+    if stability is not None:
+        yield STABILITY, _stability(environment, stability, pages, claims, further)
     if compared is not None:
         yield SWEEPS, _compared(environment, compared, claims, further, records)
     yield "findings.md", summary(pages)
@@ -238,13 +243,16 @@ def _index(
     further: Sequence[str],
     machines: Mapping[str, Mapping[str, Any]],
     accuracy: Sequence[AccuracySection],
+    stability: Matrix | None,
 ) -> str:
     listed = []
     for place, page in enumerate(pages):
         # ids are unique on a page, and the overview shows figures of many
         figure = replace(page.figures[0], name=f"card{place}") if page.figures else None
         listed.append(Listed(page, f"{page.folder}/index.html", figure))
-    listed.sort(key=lambda entry: entry.group)
+    failures = [(entry, sentence) for entry in listed for sentence in entry.page.findings.failures]
+    cases = [entry for entry in listed if is_case(entry.page)]
+    listed = sorted((entry for entry in listed if entry not in cases), key=lambda entry: entry.group)
     claims: list[tuple[Listed, VerdictRow]] = [(entry, row) for entry in listed for row in entry.page.record.claims]
     used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in pages))
     total, failed = sum(len(page.runs) for page in pages), sum(page.failed for page in pages)
@@ -258,7 +266,9 @@ def _index(
         title="Overview · harness",
         navigation=_navigation("", bool(claims), further) if pages else [Link("Overview", "", here=True)],
         pages=listed,
-        failures=[(entry, sentence) for entry in listed for sentence in entry.page.findings.failures],
+        failures=failures,
+        stability=stability,
+        cases=cases,
         groups=[(group, list(entries)) for group, entries in groupby(listed, key=lambda entry: entry.group)],
         claims=_by_source(claims),
         machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
@@ -273,6 +283,21 @@ def _by_source(claims: Sequence[tuple[Listed, VerdictRow]]) -> list[tuple[str, l
     homework = [claim for claim in claims if str(claim[1].criterion.get("source", "")).startswith("homework")]
     others = [claim for claim in claims if claim not in homework]
     return [(title, found) for title, found in (("Of the homework", homework), ("Of our own", others)) if found]
+
+
+def _stability(
+    environment: Environment, found: Matrix, pages: Sequence[ExperimentPage], claims: bool, further: Sequence[str]
+) -> str:
+    cases = [page for page in pages if is_case(page)]
+    return environment.get_template("stability.html.j2").render(
+        title="Stability · harness",
+        navigation=_navigation("", claims, further, Link(TITLES[STABILITY], STABILITY, here=True)),
+        matrix=found,
+        signs=SIGNS,
+        meanings=MEANINGS,
+        cases=cases,
+        footer=_footer([page.record for page in cases]),
+    )
 
 
 def _accuracy(

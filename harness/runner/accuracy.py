@@ -7,7 +7,6 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,10 +23,9 @@ from harness.motion.replayed import contacts_of, error_of
 from harness.runner.key import sources_hash
 from harness.runner.reference_cache import kept
 from harness.runner.setting import build_scene
-from harness.runner.trial import trial_scene
 from harness.scene.box import Box
 from harness.scene.mesh import Mesh
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
 
 # Times at which the positions of two motions are compared, and positions that are held for it in all.
 LOOKS, MOST_POSITIONS = 256, 2**21
@@ -155,10 +153,8 @@ def _both(reference: Point, scene: Scene, fly: Fly) -> dict[str, Any]:
     }
 
 
-@cache
-def warm_up(shape: Shape) -> None:
-    """Compile what `errors` needs for references of this shape, once; no run's time limit should see it."""
-    scene = trial_scene(shape)
+def warm_up(scene: Scene) -> None:
+    """Compile what `errors` needs for references of a scene's shape, on two bodies that meet."""
     contacts = contacts_of(scene, 1.0, 1e-6)
     match(contacts, contacts.onset, contacts.pairs[contacts.encounter], 1.0)
     events = (contacts.onset, contacts.pairs[contacts.encounter], np.full(len(contacts), -1))
