@@ -154,11 +154,10 @@ def _both(reference: Point, scene: Scene, fly: Fly) -> dict[str, Any]:
 
 
 def warm_up(scene: Scene) -> None:
-    """Compile what `errors` needs, on a scene of two spheres."""
-    contacts = contacts_of(scene, 1.0, 0.0)
+    """Compile what `errors` needs for references of a scene's shape, on two bodies that meet."""
+    contacts = contacts_of(scene, 1.0, 1e-6)
     match(contacts, contacts.onset, contacts.pairs[contacts.encounter], 1.0)
-    walls = np.full(len(contacts), -1)
-    events = (contacts.onset, contacts.pairs, walls)
+    events = (contacts.onset, contacts.pairs[contacts.encounter], np.full(len(contacts), -1))
     first_divergence(len(scene.bodies), *events, *events)
     trace = Trace(*events, 1.0, scene.bodies.positions, scene.bodies.velocities, 0.0, {})
     positions_at(np.ones(1), scene.bodies, trace, "elastic", 1.0)

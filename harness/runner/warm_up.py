@@ -47,10 +47,10 @@ def warm_up(point: Point) -> bool:
     bool
         Whether there was anything left to do.
     """
-    wanted = [*pieces(point.engine.algorithm, point.scene.shape, forced=bool(point.engine.stages))]
+    wanted = list(pieces(point.engine.algorithm, point.scene.shape, forced=bool(point.engine.stages)))
     if point.reference is not None:
-        wanted += [*pieces("predictive", point.reference.shape), _REFERENCES[point.reference.shape]]
-    left = [fly for fly in wanted if fly not in _flown]
+        wanted += [_REFERENCES[point.reference.shape], *pieces("predictive", point.reference.shape)]
+    left = [fly for fly in dict.fromkeys(wanted) if fly not in _flown]
     for fly in left:
         fly()
         _flown.add(fly)
@@ -118,6 +118,18 @@ def _meshes_predicted() -> None:
     _predict("mesh")
 
 
+def _sphere_reference() -> None:
+    accuracy.warm_up(_two("sphere"))
+
+
+def _hull_reference() -> None:
+    accuracy.warm_up(_two("hull"))
+
+
+def _mesh_reference() -> None:
+    accuracy.warm_up(_two("mesh"))
+
+
 class _Piece(NamedTuple):
     """Kernels that belong together, and the runs that call them."""
 
@@ -144,12 +156,9 @@ _PIECES = (
     _Piece(_meshes_predicted, ("predictive",), _MESHES),
 )
 
-# What holds a run's hits against a reference of each shape.
-_REFERENCES: Mapping[Shape, Callable[[], None]] = {
-    "sphere": lambda: accuracy.warm_up(_two("sphere")),
-    "hull": lambda: accuracy.warm_up(_two("hull")),
-    "mesh": lambda: accuracy.warm_up(_two("mesh")),
-}
+_REFERENCES: dict[Shape, Callable[[], None]] = {
+    "sphere": _sphere_reference, "hull": _hull_reference, "mesh": _mesh_reference,
+}  # fmt: skip
 
 _PAIR: Pairs = np.array([[0, 1]])
 

@@ -10,6 +10,7 @@ from harness.report.site import render
 from harness.report.tradeoffs import tradeoffs
 from harness.store.tables import experiments, runs
 from tests.report.conftest import Invented, write
+from tests.report.test_pages import Outline
 
 STEPS = [1 / 15, 1 / 60, 1 / 250, 1 / 1000, 1 / 4000]
 TRUST = 1e-14
@@ -140,6 +141,28 @@ def test_errors_of_a_power_of_ten_are_written_in_full_on_the_axis(pages):
     ticks = re.findall(r">([^<>]*)</text>", pages["accuracy/scene0-0.svg"])
     assert "10⁻¹²" in ticks
     assert "0.00" not in ticks
+
+
+def test_the_page_is_well_formed_and_whole_without_a_network(pages):
+    html, outline = pages["accuracy.html"], Outline()
+    outline.feed(html)
+    assert not outline.open
+    assert len(set(outline.ids)) == len(outline.ids)
+    assert set(outline.references) <= set(outline.ids)
+    for href in re.findall(r'href="([^"#][^"]*)"', html):
+        assert href.split("#")[0] in pages
+
+
+def test_in_free_flight_the_page_says_how_long_the_exact_motion_is_followed(tmp_path):
+    def fate(parameters, repeat, metrics):
+        metrics |= {"divergence_time": 0.1 / parameters["dt"], "position_error": parameters["dt"]}
+        metrics |= {"reference_divergence_time": 9.0, "reference_position_error": 2e-12}
+
+    free = Invented(**{**vars(ACCURACY), "swept": {"dt": STEPS}, "fate": fate})
+    text = text_of(dict(render(write(tmp_path / "x.db", [free])))["accuracy.html"]).replace("\u00a0", " ")
+    assert "How long the exact motion is followed" in text
+    assert "the reference shares its hits for 9 s, and its places to 2.00 × 10⁻¹² m." in text.replace("\u202f", " ")
+    assert "divergence time" in text.lower()
 
 
 def test_without_a_reference_there_is_no_page(tmp_path):
