@@ -101,14 +101,16 @@ def leaf_text(value: object) -> str:
     if isinstance(value, int | float | np.number):
         return _fraction(float(value))
     if isinstance(value, dict):
-        return ", ".join(f"{key} {_inner(key, inner)}" for key, inner in value.items()) or "none"
+        return ", ".join(f"{key} {_inner(key, inner)}" for key, inner in value.items()) or "as planned"
     if isinstance(value, list | tuple):
         return " × ".join(map(leaf_text, value)) if len(value) <= 3 else json.dumps(list(value))
     return str(value)
 
 
 def _inner(key: str, value: object) -> str:
-    """What stands in a mapping: the bounds or choices of a distribution, or a value."""
+    """What stands in a mapping: the bounds or choices of a distribution, whether a stage is forced on, or a value."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
     if isinstance(value, list | tuple):
         return (" to " if key == "uniform" else ", ").join(map(leaf_text, value))
     return leaf_text(value)

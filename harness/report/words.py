@@ -25,6 +25,7 @@ _LEAVES = {
     "restitution": "restitution",
     "response": "response",
     "seed": "seed",
+    "stages": "stages forced",
 }
 _METRICS = {
     "frames": "frames",
@@ -49,7 +50,7 @@ _METRICS = {
     "peak_memory": "peak memory",
 }
 # Leaves whose values explain themselves in a label; others are written "leaf value".
-_SELF_EVIDENT = ("backend", "algorithm", "mesh", "response")
+_SELF_EVIDENT = ("backend", "algorithm", "mesh", "response", "stages")
 
 
 def metric_title(name: str) -> str:
