@@ -1,7 +1,7 @@
 """What a backend is: a complete detector, asked for all touching pairs at given poses.
 
 A package adds one by a class of this form and an entry point in the group `harness.backends`; it is then named by
-`engine.backend` with the algorithm `native`.
+`engine.backend` with the algorithm `native`. What the functions below ask for, a backend may have beside that.
 """
 
 from __future__ import annotations
@@ -55,6 +55,16 @@ def assemble(backend: Backend, stages: Mapping[str, bool]) -> None:
     """Tell a backend that can leave stages out, before it is loaded, which are forced on or off."""
     if hasattr(backend, "stages"):
         backend.stages = stages
+
+
+def units(backend: Backend) -> str:
+    """In what lengths the backend tells its library of the scene; empty if it does not say."""
+    return str(getattr(backend, "units", ""))
+
+
+def precision(backend: Backend) -> str:
+    """Of its numbers, such as "double"; empty if it does not say."""
+    return str(getattr(backend, "precision", ""))
 
 
 def approximations(backend: Backend) -> Mapping[Shape, str]:
