@@ -51,6 +51,12 @@ def counters(backend: Backend) -> Mapping[str, float]:
     return counted
 
 
+def assemble(backend: Backend, stages: Mapping[str, bool]) -> None:
+    """Tell a backend that can leave stages out, before it is loaded, which are forced on or off."""
+    if hasattr(backend, "stages"):
+        backend.stages = stages
+
+
 def units(backend: Backend) -> str:
     """In what lengths the backend tells its library of the scene; empty if it does not say."""
     return str(getattr(backend, "units", ""))
@@ -59,12 +65,6 @@ def units(backend: Backend) -> str:
 def precision(backend: Backend) -> str:
     """Of its numbers, such as "double"; empty if it does not say."""
     return str(getattr(backend, "precision", ""))
-
-
-def assemble(backend: Backend, stages: Mapping[str, bool]) -> None:
-    """Tell a backend that can leave stages out, before it is loaded, which are forced on or off."""
-    if hasattr(backend, "stages"):
-        backend.stages = stages
 
 
 def approximations(backend: Backend) -> Mapping[Shape, str]:

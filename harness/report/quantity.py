@@ -106,7 +106,7 @@ def leaf_text(value: object) -> str:
     if isinstance(value, int | float | np.number):
         return _fraction(float(value))
     if isinstance(value, dict):
-        return ", ".join(f"{key} {_inner(key, inner)}" for key, inner in value.items()) or "none"
+        return ", ".join(f"{key} {_inner(key, inner)}" for key, inner in value.items()) or "as planned"
     if isinstance(value, list | tuple):
         if value and all(isinstance(item, dict) for item in value):
             return f"{plural(len(value), 'body', 'bodies')} given one by one"
@@ -115,7 +115,9 @@ def leaf_text(value: object) -> str:
 
 
 def _inner(key: str, value: object) -> str:
-    """What stands in a mapping: the bounds or choices of a distribution, or a value."""
+    """What stands in a mapping: the bounds or choices of a distribution, whether a stage is forced on, or a value."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
     if isinstance(value, list | tuple):
         return (" to " if key == "uniform" else ", ").join(map(leaf_text, value))
     return leaf_text(value)

@@ -29,6 +29,7 @@ _LEAVES = {
     "restitution": "restitution",
     "response": "response",
     "seed": "seed",
+    "stages": "stages forced",
 }
 _METRICS = {
     "frames": "frames",
@@ -53,7 +54,7 @@ _METRICS = {
     "peak_memory": "peak memory",
 }
 # Leaves whose values explain themselves in a label; others are written "leaf value".
-_SELF_EVIDENT = ("backend", "algorithm", "mesh", "response")
+_SELF_EVIDENT = ("backend", "algorithm", "mesh", "response", "stages")
 # What `scene_text` says of a scene already.
 SCENE_LEAVES = ("count", "mesh", "faces", "hull_vertices", "shape", "box_ratio", "box", "box_side", "packing")
 
