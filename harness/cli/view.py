@@ -7,6 +7,8 @@ change is run at once, shown, and its hits and costs are listed.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,22 +42,29 @@ def run(arguments: argparse.Namespace) -> int:
         from harness.cli.live import serve
 
         return serve(experiment, meshes, _open)
+    path = Path(arguments.out) if arguments.out else REPLAYS / f"{experiment.name}.html"
+    with _writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
     with Servers() as servers:
         report = servers.run(*task_of(experiment, experiment.points[0], meshes, recorded=True))
     if report.recording is None:
         print(f"{arguments.path}: the run failed ({report.status}): {report.reason}", file=sys.stderr)
         return 1
     page = replay_page(report.recording, experiment.title, _facts(experiment, report.metrics))
-    path = Path(arguments.out) if arguments.out else REPLAYS / f"{experiment.name}.html"
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with _writing(path):
         path.write_text(page, encoding="utf-8", newline="\n")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}; give another file with --out") from error
     print(path)
     if not arguments.out:
         _open(path.absolute().as_uri())
     return 0
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}; give another file with --out") from error
 
 
 def _facts(experiment: Experiment, metrics: dict[str, float]) -> list[tuple[str, str]]:

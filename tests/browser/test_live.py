@@ -62,6 +62,7 @@ def test_what_cannot_be_run_is_said_in_a_sentence_and_the_scene_stays(visit, add
     page.fill("[name=count]", "many")
     page.keyboard.press("Enter")
     page.wait_for_selector("#outcome.wrong")
+    page.wait_for_function("() => !document.getElementById('settings').hasAttribute('aria-busy')")
     assert page.text_content("#outcome") == 'count=many: must be a whole number, not "many".'
     assert page.text_content("#now") == before
 

@@ -50,12 +50,6 @@ def test_the_page_holds_the_hits_where_the_closed_form_has_them(file, capsys):
     assert array(document, "leg_times").tolist() == [0, 1.5, 0, 1.5]
     assert array(document, "leg_velocities")[3:6].tolist() == [-1, 0, 0]
 
-    assert (
-        main(["view", str(file), "--out", "other/page.html", "--set", "algorithm=brute-force", "--set", "dt=0.5"]) == 0
-    )
-    stepped = carried((file.parent / "other" / "page.html").read_text(encoding="utf-8"))
-    assert (stepped["dt"], array(stepped, "hit_times").tolist()) == (0.5, [1.5])
-
 
 def test_a_run_that_cannot_be_exits_1_and_a_file_that_cannot_be_written_2(file, capsys):
     assert main(["view", str(file), "--set", "count=300", "--set", "speed=1"]) == 1

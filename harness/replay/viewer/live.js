@@ -52,14 +52,12 @@ export function attend(replay) {
   };
   form.addEventListener("submit", (event) => {
     event.preventDefault();
+    clearTimeout(waiting);
     run();
-  });
-  form.addEventListener("input", (event) => {
-    if (event.target.type === "range") form.querySelector(`output[for="${event.target.id}"]`).textContent = event.target.value;
   });
   form.addEventListener("change", () => {
     clearTimeout(waiting);
-    waiting = setTimeout(run, 150);
+    waiting = setTimeout(run, 150); // a press of Enter is a change and a submission
   });
   run();
 }
