@@ -18,6 +18,7 @@ from markupsafe import Markup
 
 from harness.errors import InputError
 from harness.report import palette
+from harness.report.backends import BackendsPage
 from harness.report.comparison import Comparison
 from harness.report.figures import Figure
 from harness.report.pages import (
@@ -35,9 +36,10 @@ from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
 from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
-from harness.store.tables import conditions, controls, experiments, machines, runs
+from harness.store.tables import comparisons, conditions, controls, experiments, machines, runs
 
 SWEEPS = "sweeps.html"
+BACKENDS = "backends.html"
 
 
 @dataclass(frozen=True)
@@ -130,12 +132,18 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     environment = _environment()
     rows = {page.record.name: page.published for page in pages}
     claims, compared = any(record.claims for record in records), newest_comparison(database)
+    backends = BackendsPage(comparisons(database), table)
+    others = [Link("Backends", BACKENDS)] if backends.records else []
+    others += [Link("Sweeps compared", SWEEPS)] if compared is not None else []
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
-        yield from _experiment(environment, page, elsewhere, claims, compared is not None)
-    yield "index.html", _index(environment, pages, records, compared is not None, machines(database))
+        yield from _experiment(environment, page, elsewhere, claims, others)
+    yield "index.html", _index(environment, pages, records, others, machines(database))
     if compared is not None:
-        yield SWEEPS, _compared(environment, compared, claims, records)
+        yield SWEEPS, _compared(environment, compared, claims, others, records)
+    if backends.records:
+        yield BACKENDS, _backends(environment, backends, claims, others, records)
+        yield from backends.files()
     yield "runs.csv", csv(table)
 
 
@@ -155,17 +163,17 @@ def _environment() -> Environment:
     return environment
 
 
-def _navigation(up: str, claims: bool, sweeps: bool, here: Link | None = None) -> list[Link]:
-    """The way through the site; further pages join here."""
+def _navigation(up: str, claims: bool, others: Sequence[Link], here: Link | None = None) -> list[Link]:
+    """The way through the site; `others` are the pages beside the overview that have something to show."""
     overview = Link("Overview", f"{up}index.html", here is None)
     titles = ("Experiments", "Claims", "Data") if claims else ("Experiments", "Data")
     places = [Link(title, f"{up}index.html#{title.lower()}") for title in titles]
-    compared = [Link("Sweeps compared", f"{up}{SWEEPS}")] if sweeps and (here is None or here.href != SWEEPS) else []
-    return [overview, *places, *compared, *([here] if here else [])]
+    further = [replace(link, href=f"{up}{link.href}") for link in others if here is None or here.href != link.href]
+    return [overview, *places, *further, *([here] if here else [])]
 
 
 def _experiment(
-    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, sweeps: bool
+    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, others: Sequence[Link]
 ) -> Iterator[tuple[str, str]]:
     published = published_section(page, elsewhere)
     drawn = [*page.figures, page.exponent_figure, published.figure if published else None]
@@ -181,7 +189,7 @@ def _experiment(
     here = Link(page.record.name, "", here=True)
     text = environment.get_template("experiment.html.j2").render(
         title=f"{page.record.title} · harness",
-        navigation=_navigation("../" * len(page.folder.parts), claims, sweeps, here),
+        navigation=_navigation("../" * len(page.folder.parts), claims, others, here),
         page=page,
         published=published,
         verdicts=verdicts,
@@ -219,7 +227,7 @@ def _index(
     environment: Environment,
     pages: Sequence[ExperimentPage],
     records: Sequence[ExperimentRecord],
-    sweeps: bool,
+    others: Sequence[Link],
     machines: Mapping[str, Mapping[str, Any]],
 ) -> str:
     listed = []
@@ -238,7 +246,7 @@ def _index(
         totals += f" Of {plural(len(claims), 'claim')}, {said}."
     return environment.get_template("index.html.j2").render(
         title="Overview · harness",
-        navigation=_navigation("", bool(claims), sweeps) if pages else [Link("Overview", "", here=True)],
+        navigation=_navigation("", bool(claims), others) if pages else [Link("Overview", "", here=True)],
         pages=listed,
         failures=[(entry, sentence) for entry in listed for sentence in entry.page.findings.failures],
         claims=claims,
@@ -248,10 +256,41 @@ def _index(
     )
 
 
-def _compared(environment: Environment, found: Comparison, claims: bool, records: Sequence[ExperimentRecord]) -> str:
+def _backends(
+    environment: Environment,
+    page: BackendsPage,
+    claims: bool,
+    others: Sequence[Link],
+    records: Sequence[ExperimentRecord],
+) -> str:
+    entries = (
+        ("matrix", "Matrix", True),
+        ("gaps", "Gaps", page.gaps is not None),
+        ("cases", "Proven wrong", bool(page.cases)),
+        ("approximations", "Approximations", page.approximations is not None),
+        ("flights", "In flight", page.flights is not None),
+        ("speed", "Speed", bool(page.speeds)),
+        ("reading", "How to read", True),
+    )
+    return environment.get_template("backends.html.j2").render(
+        title="Backends · harness",
+        navigation=_navigation("", claims, others, Link("Backends", BACKENDS, here=True)),
+        contents=[(identity, title) for identity, title, there in entries if there],
+        page=page,
+        footer=_footer(records),
+    )
+
+
+def _compared(
+    environment: Environment,
+    found: Comparison,
+    claims: bool,
+    others: Sequence[Link],
+    records: Sequence[ExperimentRecord],
+) -> str:
     return environment.get_template("sweeps.html.j2").render(
         title="Sweeps compared · harness",
-        navigation=_navigation("", claims, True, Link("Sweeps compared", SWEEPS, here=True)),
+        navigation=_navigation("", claims, others, Link("Sweeps compared", SWEEPS, here=True)),
         sentences=comparison_summary(found),
         verdicts=found.verdicts,
         points=points_table(found),
