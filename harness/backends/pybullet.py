@@ -47,12 +47,14 @@ class PyBullet:
         shapes: dict[float, int] = {}
         self._numbers = {}
         self._of_size: dict[float, int] = {}
-        for i, size in enumerate((scene.bodies.sizes / self._unit).tolist()):
+        sizes, places = (scene.bodies.sizes / self._unit).tolist(), (scene.bodies.positions / self._unit).tolist()
+        for i, (size, place) in enumerate(zip(sizes, places, strict=True)):
             if size not in shapes:
                 shapes[size] = self._shape(scene, size)
-            # a mass, because two bodies without one never show a contact
+            # a mass, because two bodies without one never show a contact; in its place, because bodies that are all
+            # made in one place become pairs of it, and thousands of bodies millions of pairs
             body = pybullet.createMultiBody(
-                baseMass=1.0, baseCollisionShapeIndex=shapes[size], physicsClientId=self._client
+                baseMass=1.0, baseCollisionShapeIndex=shapes[size], basePosition=place, physicsClientId=self._client
             )
             self._numbers[body] = i
             self._of_size.setdefault(size * self._unit, body)

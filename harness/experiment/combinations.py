@@ -111,15 +111,7 @@ def backend_has_the_shape(values: Values) -> Conflict | None:
     return None
 
 
-def predictive_flies_spheres(values: Values) -> Conflict | None:
-    """Only spheres have their next hit in closed form."""
-    if values["algorithm"] == "predictive" and values["shape"] != "sphere":
-        message = "algorithm predictive flies spheres only, not shape {}"
-        return Conflict(message, ("algorithm", "shape"), excludable=True)
-    return None
-
-
 SCENE: tuple[Rule, ...] = (has_count_or_bodies, has_one_box, has_a_mesh)
 MOTION: tuple[Rule, ...] = (restitution_has_an_effect, frames_can_be_counted)
 ENGINE: tuple[Rule, ...] = (backend_has_the_algorithm,)
-POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE, backend_has_the_shape, predictive_flies_spheres)
+POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE, backend_has_the_shape)

@@ -123,7 +123,7 @@ class EngineSpec(Declared):
 class ReferenceSpec(Declared):
     """What errors are measured against."""
 
-    algorithm: Algorithm = Field("predictive", description="algorithm of the reference run")
+    algorithm: Literal["predictive"] = Field("predictive", description="of the reference run; frames would miss hits")
     tolerance: Positive = Field(1e-10, description="its tolerance, of size")
 
 

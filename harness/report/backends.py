@@ -14,7 +14,8 @@ from markupsafe import Markup
 from harness.report.agreement import draw_gaps, draw_section
 from harness.report.figures import Figure, Key
 from harness.report.proof import sentences_of
-from harness.report.quantity import number, plural, scale
+from harness.report.quantity import number, plural
+from harness.report.speeds import speed_table
 from harness.report.table import Column, Entry, Table, plain, words
 from harness.store.records import ComparisonRecord
 
@@ -25,7 +26,6 @@ TITLES = {
     "approximation": "approximation",
     "real": "real",
 }
-SPEED = "pair_seconds_per_frame"
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,16 +251,9 @@ class BackendsPage:
     @cached_property
     def speeds(self) -> list[Table]:
         """What a frame costs, by scene, beside whether the answers are right; who is wrong has no rank."""
-        table = self.runs
-        if SPEED not in table.columns:
-            return []
-        compared = {record.experiment for record in self.records}
-        tables = []
-        for name in sorted(compared):
-            mine = table[(table["experiment"] == name) & (table["status"] == "ok")]
-            if not mine.empty and mine["backend"].nunique() > 1:
-                tables.append(self._speed(name, mine))
-        return tables
+        names = sorted({record.experiment for record in self.records})
+        tables = (speed_table(name, self.runs, self.wrong, self.pairs) for name in names)
+        return [table for table in tables if table is not None]
 
     @cached_property
     def cases(self) -> list[ShownCase]:
@@ -320,53 +313,6 @@ class BackendsPage:
         flag = f"{number(counts['real'])} real" if counts["real"] else ""
         return Entry(share, small=said, numeric=False, flag=flag)
 
-    def _speed(self, name: str, runs: pd.DataFrame) -> Table:
-        scenes = [leaf for leaf in ("count", "packing") if runs[leaf].nunique() > 1]
-        shapes = list(runs["shape"].unique())
-        medians = runs.groupby([*scenes, "backend", "algorithm"], dropna=False)[SPEED].median().reset_index()
-        unit = scale(list(medians[SPEED]), "s")
-        methods = list(dict.fromkeys(zip(medians["backend"], medians["algorithm"], strict=True)))
-        places = medians[scenes].drop_duplicates().itertuples(index=False) if scenes else [()]
-        columns = [Column("Method", numeric=False)]
-        cells: dict[tuple[str, str], list[Entry]] = {method: [] for method in methods}
-        for place in places:
-            here = medians
-            for leaf, value in zip(scenes, place, strict=True):
-                here = here[here[leaf] == value]
-            columns.append(Column(_scene_text(scenes, place), unit.symbol))
-            right = here[[(backend, shapes[0]) not in self.wrong for backend in here["backend"]]]
-            best = right[SPEED].min() if len(right) > 1 else math.nan
-            for method in methods:
-                row = here[(here["backend"] == method[0]) & (here["algorithm"] == method[1])]
-                seconds = float(row[SPEED].iloc[0]) if len(row) else math.nan
-                cells[method].append(
-                    Entry(
-                        unit.text(seconds) if len(row) else "not run",
-                        mark="best" if seconds == best else "",
-                        struck=(method[0], shapes[0]) in self.wrong,
-                        sort=plain(seconds),
-                    )
-                )
-        columns.append(Column("Correctness", numeric=False))
-        rows = tuple(
-            (words(f"{backend}, {algorithm}"), *cells[backend, algorithm], self._correctness(backend, shapes[0]))
-            for backend, algorithm in methods
-        )
-        note = (
-            "CPU time of pair detection a frame, medians, poses included; the fastest of those that are right is bold. "
-            "A backend that was proven wrong on this shape is struck through and has no rank."
-        )
-        return Table(f"Speed beside correctness: {name}", note, tuple(columns), rows)
-
-    def _correctness(self, backend: str, shape: str) -> Entry:
-        count = self.wrong.get((backend, shape), 0)
-        if count:
-            return words("", flag=f"wrong {plural(count, 'time')}")
-        met = [tally for tally in self.pairs if backend in tally["backends"] and tally["shape"] == shape]
-        if not met:
-            return words("not compared")
-        return words(f"never wrong in {plural(sum(tally['verdicts'] for tally in met), 'verdict')}")
-
 
 def _shown(record: ComparisonRecord, row: Mapping[str, Any], place: int) -> ShownCase:
     name = f"case-{place + 1}"
@@ -409,11 +355,3 @@ def _percent(share: float) -> str:
         return "100 %"
     digits = max(1, math.ceil(-math.log10(1 - share)) - 1)
     return f"{math.floor(share * 10 ** (digits + 2)) / 10**digits:.{digits}f} %"
-
-
-def _scene_text(leaves: Sequence[str], values: Sequence[Any]) -> str:
-    names = {"count": "{} bodies", "packing": "packing {}"}
-    return ", ".join(
-        names[leaf].format(number(float(f"{value:.2g}") if leaf == "packing" else value))
-        for leaf, value in zip(leaves, values, strict=True)
-    ) or "a frame"  # fmt: skip
