@@ -1,7 +1,8 @@
 """Experiments as poses to compare backends at, and what is kept of it; for `compare`, and for `sweep`.
 
 `compare` asks about every frame and every hard pose. A sweep asks, of an experiment with `measure: {compare: on}`,
-about as many frames of each scene as make 100 000 verdicts (two at least), and about every twelfth hard pose.
+about as many frames of each scene as make 60 000 verdicts, and about every twenty-third first contact; scenes of which
+two frames are more than that are left out.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Extent:
     Parameters
     ----------
     verdicts : of a scene as it flies, about; None for every frame
-    every : ask about every so manieth hard pose
+    every : ask about every so manieth pose at first contact
     flown : frames of a flight with hits, at the most; None for all
     cases : wrong verdicts of one backend to make smaller
     """
@@ -53,15 +54,16 @@ class Extent:
     flown: int | None
     cases: int
 
-    def frames(self, point: Point, bodies: int) -> int:
-        """The last frame of a scene to ask about."""
+    def frames(self, point: Point, bodies: int) -> int | None:
+        """The last frame of a scene to ask about; None to leave it out."""
         if self.verdicts is None:
             return point.motion.frames
-        return min(point.motion.frames, max(1, self.verdicts // (bodies * (bodies - 1) // 2)))
+        most = self.verdicts // (bodies * (bodies - 1) // 2) - 1
+        return min(point.motion.frames, most) if most > 0 else None
 
 
 WHOLE = Extent(verdicts=None, every=1, flown=None, cases=5)
-SWEPT = Extent(verdicts=100_000, every=12, flown=600, cases=2)
+SWEPT = Extent(verdicts=60_000, every=23, flown=600, cases=2)
 
 
 def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[tuple[str, ...], list[str]]:
@@ -114,9 +116,10 @@ def reductions(found: Comparison, meshes: Meshes, extent: Extent) -> list[Reduce
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:
     """What the database keeps of a comparison of two backends."""
+    distinct = {row.text or str(place): row for place, row in enumerate(rows) if row.tried}
     return document(found, rows, {}) | {
         "title": experiment.title,
-        "shown": [shown_case(row) for row in rows if row.tried],
+        "shown": [shown_case(row) for row in distinct.values()],
         "versions": package_versions(),
     }
 
@@ -137,8 +140,9 @@ def _settings(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterato
             continue
         seen.add(moved)
         scene = _scene(experiment, point, meshes)
-        if scene is not None:
-            yield flown(scene, extent.frames(point, len(scene.bodies)), point.motion.dt)
+        frames = None if scene is None else extent.frames(point, len(scene.bodies))
+        if scene is not None and frames is not None:
+            yield flown(scene, frames, point.motion.dt)
     random = {(point.scene.shape, point.scene.mesh): point for point in experiment.points if point.scene.bodies is None}
     for (shape, _), point in random.items():
         yield from hard_poses(shape, mesh_of(experiment, point, meshes), extent.every)

@@ -23,6 +23,8 @@ from harness.scene.scene import Scene
 
 # Steps towards the shortest way out of an overlap; each that helps comes strictly nearer, most need two or three.
 _MOST_STEPS = 10
+# Directions, and vertices, beyond which not every one is put to every other.
+_MANY, _FEW = 1200, 100
 
 
 def judge(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) -> Judgement:
@@ -87,7 +89,11 @@ def _depth(
     """m, the shortest way out of an overlap: by the normals of all faces, then bettered as edges may need it."""
     one, other = _floats(first, unit), _floats(second, unit)
     normals = np.vstack([-_normals(one, faces), _normals(other, other_faces)])
-    widths = _along(other, normals).max(axis=0) - _along(one, normals).min(axis=0)
+    if len(normals) > _MANY:
+        # of a few vertices each, to find the directions that are worth all of them
+        few = _widths(one[:: len(one) // _FEW + 1], other[:: len(other) // _FEW + 1], normals)
+        normals = normals[np.argsort(few, kind="stable")[:_MANY]]
+    widths = _widths(one, other, normals)
     depth, normal = float(widths.min()), normals[widths.argmin()]
     extent = float(np.ptp(one, axis=0).max())
     for _ in range(_MOST_STEPS):
@@ -114,6 +120,11 @@ def _shortened(point: Point) -> Point:
 
 def _floats(points: Sequence[Point], unit: Fraction) -> Floats:
     return np.array([[part * unit.numerator / unit.denominator for part in point] for point in points])
+
+
+def _widths(one: Floats, other: Floats, directions: Floats) -> Floats:
+    """(k,): how far one set must be moved along each direction to part from the other."""
+    return np.asarray(_along(other, directions).max(axis=0) - _along(one, directions).min(axis=0), np.float64)
 
 
 def _along(points: Floats, directions: Floats) -> Floats:

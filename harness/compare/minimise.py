@@ -101,7 +101,7 @@ class _Rounding:
     def _try(self, **changed: Floats) -> bool:
         """Take these numbers, if the backend is wrong with them as well."""
         scene = self._small.scene
-        bodies = replace(scene.bodies, **changed)
+        bodies = replace(scene.bodies, **{name: values + 0.0 for name, values in changed.items()})  # no -0
         if (bodies.sizes <= 0).any() or not np.linalg.norm(bodies.quaternions, axis=1).all():
             return False
         lengths = np.linalg.norm(bodies.quaternions, axis=1, keepdims=True)

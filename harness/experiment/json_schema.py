@@ -133,13 +133,13 @@ def _as_editors_read(schema: Any) -> Any:
         return [_as_editors_read(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
+    outside = {key: schema[key] for key in ("default", "description") if key in schema}
     if schema.get("type") in ("number", "integer"):
-        outside = {key: schema[key] for key in ("default", "description") if key in schema}
         inside = {key: value for key, value in schema.items() if key not in ("default", "description", "title")}
         number = {_BOUNDS.get(key, key): value for key, value in inside.items()}
         return {"anyOf": [number, {"$ref": "#/$defs/NumberAsText"}], **outside}
     if schema.get("type") == "boolean":
-        return {"anyOf": [{"type": "boolean"}, {"enum": SWITCH_TEXT}]}
+        return {"anyOf": [{"type": "boolean"}, {"enum": SWITCH_TEXT}], **outside}
     kept = {key: _as_editors_read(value) for key, value in schema.items() if not _is_heading(key, value)}
     items = kept.get("prefixItems")
     if items and all(item == items[0] for item in items):

@@ -20,6 +20,7 @@ from markupsafe import Markup
 from harness.errors import InputError
 from harness.report import palette
 from harness.report.accuracy import AccuracySection, sections
+from harness.report.backends import BackendsPage
 from harness.report.comparison import Comparison
 from harness.report.figures import Figure
 from harness.report.pages import (
@@ -40,10 +41,11 @@ from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
 from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
-from harness.store.tables import conditions, controls, experiments, machines, runs
+from harness.store.tables import comparisons, conditions, controls, experiments, machines, runs
 
 SWEEPS, STABILITY, ACCURACY = "sweeps.html", "stability.html", "accuracy.html"
-TITLES = {ACCURACY: "Error against run time", STABILITY: "Stability", SWEEPS: "Sweeps compared"}
+BACKENDS = "backends.html"
+TITLES = {ACCURACY: "Error against run time", BACKENDS: "Backends", STABILITY: "Stability", SWEEPS: "Sweeps compared"}
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,13 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     claims = any(page.record.claims for page in pages if not is_case(page))
     compared = newest_comparison(database)
     accuracy, stability = sections(pages), matrix(pages)
-    present = ((ACCURACY, bool(accuracy)), (STABILITY, stability is not None), (SWEEPS, compared is not None))
+    backends = BackendsPage(comparisons(database), table)
+    present = (
+        (ACCURACY, bool(accuracy)),
+        (BACKENDS, bool(backends.records)),
+        (STABILITY, stability is not None),
+        (SWEEPS, compared is not None),
+    )
     further = [file for file, there in present if there]
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
@@ -153,6 +161,9 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
     if accuracy:
         yield from _accuracy(environment, accuracy, claims, further, records)
+    if backends.records:
+        yield BACKENDS, _backends(environment, backends, claims, further, records)
+        yield from backends.files()
     if stability is not None:
         yield STABILITY, _stability(environment, stability, pages, claims, further)
     if compared is not None:
@@ -330,6 +341,31 @@ def _accuracy(
     for section in found:
         for figure in section.figures:
             yield figure.file, figure.document
+
+
+def _backends(
+    environment: Environment,
+    page: BackendsPage,
+    claims: bool,
+    further: Sequence[str],
+    records: Sequence[ExperimentRecord],
+) -> str:
+    entries = (
+        ("matrix", "Matrix", True),
+        ("gaps", "Gaps", page.gaps is not None),
+        ("cases", "Proven wrong", bool(page.cases)),
+        ("approximations", "Approximations", page.approximations is not None),
+        ("flights", "In flight", page.flights is not None),
+        ("speed", "Speed", bool(page.speeds)),
+        ("reading", "How to read", True),
+    )
+    return environment.get_template("backends.html.j2").render(
+        title="Backends · harness",
+        navigation=_navigation("", claims, further, Link(TITLES[BACKENDS], BACKENDS, here=True)),
+        contents=[(identity, title) for identity, title, there in entries if there],
+        page=page,
+        footer=_footer(records),
+    )
 
 
 def _compared(

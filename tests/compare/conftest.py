@@ -45,6 +45,14 @@ DEFECTS = {
             order[[0, 1]] = 1, 0
             return super().pairs(positions[order], quaternions[order])
     """,
+    "blind": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions)[:0]
+    """,
+    "blind-too": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions)[:0]
+    """,
     "crashes": """
         calls = 0
         def pairs(self, positions, quaternions):
@@ -61,16 +69,23 @@ DEFECTS = {
 }
 
 
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    """Comparisons are kept in results/results.db of the working folder."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def defective(tmp_path, monkeypatch):
     """Installs a backend of a name in `DEFECTS`, and returns the name."""
 
     def install(name: str) -> str:
         folder = tmp_path / "plugins"
-        metadata = folder / f"{name}-1.0.dist-info"
+        metadata = folder / f"{name.replace('-', '_')}-1.0.dist-info"
         metadata.mkdir(parents=True)
         (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
-        (metadata / "entry_points.txt").write_text(f"[harness.backends]\n{name} = {name}_backend:Plugin\n")
+        module = f"{name.replace('-', '_')}_backend"
+        (metadata / "entry_points.txt").write_text(f"[harness.backends]\n{name} = {module}:Plugin\n")
         head = f"""
             import dataclasses, os, signal, time
             import numpy as np
@@ -80,9 +95,8 @@ def defective(tmp_path, monkeypatch):
                 name = {name!r}
             """
         body = textwrap.indent(textwrap.dedent(DEFECTS[name]), 4 * " ")
-        (folder / f"{name}_backend.py").write_text(textwrap.dedent(head) + body)
+        (folder / f"{module}.py").write_text(textwrap.dedent(head) + body)
         monkeypatch.syspath_prepend(str(folder))
-        monkeypatch.setenv("PYTHONPATH", str(folder))
         return name
 
     return install
