@@ -27,6 +27,8 @@ PARTED = 1
 
 # Looks at a contact after which following it is given up. Ordinary ones end after 50 to 200.
 MOST_LOOKS = 20_000
+# Searches for the next contact that are taken up again where they were given up, of a window.
+MOST_RESUMED = 50
 # Of the tolerance: the gap at which a contact ends, a little more than the one at which the next begins, and how far
 # bodies may move between two looks though nothing proves that they touch.
 PARTED_GAP, RESOLUTION = 1.125, 0.125
@@ -110,9 +112,13 @@ def mesh_contacts(
 
     Parameters and answer as for `hull_contacts`, with `MeshShape` for hulls.
     """
-    intervals, count, time = np.empty((4, 2)), 0, begin
+    intervals, count, time, resumed = np.empty((4, 2)), 0, begin, 0
     while time < end:
         found = time_of_mesh_impact(shape_a, shape_b, a, b, time, end, tolerance, NO_START)
+        if found.verdict == STALLED and found.time > time and resumed < MOST_RESUMED:
+            time = found.time  # nothing touches before: one of them inside the other and spinning fast
+            resumed += 1
+            continue
         if found.verdict != IMPACT:
             return Contacts(intervals[:count].copy(), found.verdict == STALLED)
         parting = end_of_mesh_contact(shape_a, shape_b, a, b, found.time, end, tolerance)

@@ -82,8 +82,8 @@ class MeshImpact(NamedTuple):
     ----------
     verdict : IMPACT; NEVER, if nothing touches until the end of the window; STALLED, if it was given up
     time : s, before which nothing touches; of the impact, if there is one, else the end of the window or inf
-    gap : m, between the nearest triangles at an impact, else 0
-    axis : of the gap, pointing away from the second body, in the world; a unit vector, or zero if they cross
+    gap : m, between the nearest triangles at an impact; else of no meaning
+    axis : of the gap, pointing away from the second body, in the world: a unit vector, of no meaning if they cross
     start : for the next search of this pair
     steps : pairs of parts looked at, and distances of hulls measured
     """

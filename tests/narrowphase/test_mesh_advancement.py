@@ -144,10 +144,7 @@ def test_late_times_lose_no_more_digits_than_the_clock_has():
     late = 1e5
     a, b = body(spin=(0.3, 1, 2)), body((3, 0.2, 0.1), (-1.0, 0, 0), spin=(1, -2, 0))
     early = impact(a, b, tolerance=1e-9)
-    moved = [
-        m._replace(position=tuple(p - late * v for p, v in zip(m.position, m.velocity, strict=True))) for m in (a, b)
-    ]
-    turned = [m._replace(quaternion=attitude(m, -late)) for m in moved]
-    found = impact(*turned, begin=late, tolerance=1e-9)
+    earlier = [m._replace(position=place(m, -late), quaternion=attitude(m, -late)) for m in (a, b)]
+    found = impact(*earlier, begin=late, tolerance=1e-9)
     assert found.verdict == IMPACT
     assert found.time - late == pytest.approx(early.time, abs=1e-8)
