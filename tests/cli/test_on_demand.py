@@ -65,4 +65,4 @@ def test_a_refusal_that_nobody_expects_fails_the_sweep(tmp_path, monkeypatch, ca
     monkeypatch.chdir(tmp_path)
     (tmp_path / "refused.yaml").write_text(REFUSED.replace("where: {count: 23}", "where: {count: 2}"))
     assert main(["sweep", "refused.yaml", "--quiet"]) == 1
-    assert "rejected at count=2 is 0 (expected exactly 1)" in capsys.readouterr().out
+    assert "rejected is 0 for count=2 (expected exactly 1)" in capsys.readouterr().out
