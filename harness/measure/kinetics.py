@@ -1,4 +1,4 @@
-"""Measures a run of spheres as a gas: collision rate, pressure, virial balance, and kinetic theory beside them.
+"""Measures a run as a gas: collision rate, pressure, virial balance, and kinetic theory beside them.
 
 Rate and pressure are those of the time after `begin`, when the start is forgotten; the balance is exact at any time.
 """
@@ -54,12 +54,13 @@ class Kinetics:
 
     Parameters
     ----------
-    scene : Scene of spheres
-    response, restitution : of the run; theory and virial are of elastic spheres
+    scene : Scene
+    response, restitution : of the run; the virial is of elastic hits, and pressure and theory of spheres
     """
 
     def __init__(self, scene: Scene, response: str, restitution: float) -> None:
         self._sizes, self._masses, self._sides = scene.bodies.sizes, scene.bodies.masses, scene.box.sides
+        self._spheres = scene.shape == "sphere"
         self._elastic = response == "elastic" and restitution == 1.0
         self._answered = response != "none"
         self._first: _Reading | None = None
@@ -76,6 +77,10 @@ class Kinetics:
             return metrics
         time, hits = last.time - first.time, last.pair_hits - first.pair_hits
         metrics["collision_rate"] = 2.0 * hits / (len(self._sizes) * time)
+        if self._elastic:
+            metrics["virial_residual"] = abs(gas.virial_residual)
+        if not self._spheres:
+            return metrics
         reach = self._sides - self._sizes.mean()
         area = 2.0 * float(reach[0] * reach[1] + reach[1] * reach[2] + reach[2] * reach[0])
         if (reach <= 0.0).any():
@@ -84,7 +89,6 @@ class Kinetics:
         metrics["pressure"] = pressure
         if not self._elastic:
             return metrics
-        metrics["virial_residual"] = abs(gas.virial_residual)
         temperature = 2.0 * gas.kinetic_energy / (3.0 * len(self._sizes))
         if np.ptp(self._sizes) == 0.0 and np.ptp(self._masses) == 0.0 and temperature > 0.0:
             diameter, mass = float(self._sizes[0]), float(self._masses[0])

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from harness.errors import InputError
 from harness.motion.response import Response
 from harness.scene.scene import Scene
@@ -60,7 +62,7 @@ def make_plan(
         If a forced stage does not exist, or forcing it would change the result.
     """
     if algorithm == "predictive":
-        stages = [_orientations(scene), *_scheduled(scene)]
+        stages = [_orientations(scene), *_scheduled(scene, response)]
     else:
         stages = [
             _orientations(scene),
@@ -93,8 +95,10 @@ def _pairs(scene: Scene, backend: str, algorithm: str) -> Stage:
     return Stage("pairs", True, f"{algorithm} on {backend} finds the touching pairs among {count} bodies")
 
 
-def _scheduled(scene: Scene) -> list[Stage]:
+def _scheduled(scene: Scene, response: Response) -> list[Stage]:
     sizes = scene.bodies.sizes
+    if scene.shape != "sphere":
+        return _scheduled_solids(scene, response)
     if len(sizes) < 2:
         return [Stage("pairs", False, f"there is no pair of bodies among {len(sizes)}"), Stage("walls", True, _FOLDS)]
     grids = "cells of one size" if sizes.min() == sizes.max() else "a hierarchy of cells, one level a size class"
@@ -106,6 +110,33 @@ def _scheduled(scene: Scene) -> list[Stage]:
     ]
 
 
+def _scheduled_solids(scene: Scene, response: Response) -> list[Stage]:
+    sizes = scene.bodies.sizes
+    alone = f"there is no pair of bodies among {len(sizes)}"
+    grids = "cells of one size" if np.ptp(sizes) == 0.0 else "a hierarchy of cells, one level a size class"
+    pairs = f"from when to when each body's bounding sphere overlaps its neighbours', found by {grids}"
+    folds = "response is none: the box folds the path of each bounding sphere exactly"
+    stages = [
+        Stage("frames", False, "events are computed, not stepped to"),
+        Stage("backend", False, "contacts are searched by conservative advancement; no library is asked"),
+        Stage("pairs", True, pairs),
+        Stage("hull_search", True, "hulls are advanced to their contact when their spheres meet, not before"),
+        _mesh_search(scene),
+        Stage("walls", True, _FOLDS),
+        Stage("wall_search", response != "none", _WALL_SEARCH if response != "none" else folds),
+    ]
+    if len(sizes) < 2:
+        stages[2:5] = [Stage(stage.name, False, alone) for stage in stages[2:5]]
+    return stages
+
+
+def _mesh_search(scene: Scene) -> Stage:
+    if scene.shape == "hull":
+        return Stage("mesh_search", False, "the shape is the hull")
+    return Stage("mesh_search", True, "surfaces are advanced to their contact when their hulls meet, not before")
+
+
+_WALL_SEARCH = "the support function of the hull, once a bounding sphere meets the wall"
 _FOLDS = "the next wall of each body, from its velocity"
 
 

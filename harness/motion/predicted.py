@@ -1,4 +1,4 @@
-"""Predictive motion of spheres: from event to event, without frames.
+"""Predictive motion: from event to event, without frames.
 
 The event loop is `harness.motion.predictive`; this is a run of it, with its clock, counters and what it conserves.
 """
@@ -16,9 +16,13 @@ from harness.measure.conservation import Conservation, energy
 from harness.measure.kinetics import Kinetics
 from harness.motion.course import CourseLog
 from harness.motion.hits import Outcome, Trace
+from harness.motion.kinematics import Flight
 from harness.motion.plan import Plan
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
+from harness.motion.predictive.solid_simulation import SolidSimulation
+from harness.motion.predictive.solids import Form
 from harness.motion.response import Response
+from harness.motion.soundness import refuse_lost
 from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene
 
@@ -33,17 +37,19 @@ def fly_predicted(
     duration: float,
     response: Response,
     restitution: float = 1.0,
+    tolerance: float = 1e-6,
     traced: bool = False,
     recorded: bool = False,
 ) -> Outcome:
-    """Fly spheres for `duration` (s), event by event.
+    """Fly a scene for `duration` (s), event by event.
 
     Parameters
     ----------
-    scene : Scene of shape `sphere`
+    scene : Scene
     plan : Plan of this scene
     duration : s; what is due at that very time still happens
     response, restitution : see `harness.motion.response`
+    tolerance : of size; surfaces nearer than that touch. Spheres need none
     traced : keep every event
     recorded : keep the course of every body; the clock of such a flight sees it
 
@@ -56,17 +62,21 @@ def fly_predicted(
     conservation, kinetics = Conservation(bodies), Kinetics(scene, response, restitution)
     depth = _Depth(scene) if plan.keeps("penetration") else None
     course = CourseLog(bodies.positions, bodies.velocities) if recorded else None
+    form = None if scene.shape == "sphere" else Form(scene)
     clock = Clock("run_seconds")
-    simulation = Simulation(
-        bodies.positions,
-        bodies.velocities,
-        bodies.radii,
-        bodies.masses,
-        scene.box.half,
-        response=response,
-        restitution=restitution,
-        record=traced,
-    )
+    if form is None:
+        simulation = Simulation(
+            bodies.positions,
+            bodies.velocities,
+            bodies.radii,
+            bodies.masses,
+            scene.box.half,
+            response=response,
+            restitution=restitution,
+            record=traced,
+        )
+    else:
+        simulation = SolidSimulation(bodies, scene.box, form, response, restitution, record=traced, tolerance=tolerance)
     clock.lap("run_seconds")
     outside = np.zeros(len(bodies), np.bool_)
     for look in range(1, LOOKS + 1):
@@ -78,10 +88,13 @@ def fly_predicted(
             simulation.advance(until)
         clock.lap("run_seconds")
         positions, velocities = simulation.positions, simulation.velocities
+        refuse_lost(positions, velocities, simulation.time)
         conservation.observe(velocities)
+        if response == "elastic":
+            conservation.observe_momentum(velocities, simulation.wall_impulses)
         outside |= (np.abs(positions) > scene.box.half).any(axis=1)
         if depth is not None:
-            depth.look(positions)
+            depth.look(positions, duration * look / LOOKS)
         if look == 1:
             kinetics.begin(simulation)
 
@@ -99,6 +112,8 @@ def fly_predicted(
     if counted["events"]:
         metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
         metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
+    if response == "elastic":
+        metrics["momentum_drift"] = conservation.momentum_drift
     if depth is not None:
         metrics["max_penetration"] = depth.deepest
     trace = _trace(scene, simulation, duration, counted) if traced else None
@@ -110,13 +125,14 @@ class _Depth:
 
     def __init__(self, scene: Scene) -> None:
         self.deepest = 0.0
-        self._quaternions = scene.bodies.quaternions
+        self._flight = Flight(scene.bodies, scene.box, folded=False, turning=scene.shape != "sphere")
         self._grid = HierarchicalGrid(scene.bodies.radii, scene.box)
         self._penetration = Penetration(scene)
 
-    def look(self, positions: Floats) -> None:
+    def look(self, positions: Floats, time: float) -> None:
         pairs = self._grid.close_pairs(positions)
-        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._quaternions))
+        self._flight.move_to(time)
+        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._flight.quaternions))
 
 
 def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:

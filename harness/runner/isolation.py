@@ -152,7 +152,9 @@ def _reported(task: Task, mesh: Mesh | None) -> bytes:
     memory = Report("memory", f"needed more than {task.memory / 2**30:.3g} GiB")
     try:
         try:
-            result = execute(task.point, mesh, memory=task.memory, traced=task.traced, recorded=task.recorded)
+            result = execute(
+                task.point, mesh, memory=task.memory, traced=task.traced, recorded=task.recorded, asked=task.asked
+            )
             report = Report(
                 "ok",
                 None,

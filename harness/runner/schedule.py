@@ -24,7 +24,10 @@ METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to do: a repeat of a point, for the first experiment that lists it; or its control, or its recording."""
+    """One run to do: a repeat of a point, for the first experiment that lists it; or its control, or its recording.
+
+    `asked` are the metrics made on demand that any of the experiments names that list it.
+    """
 
     experiment: Experiment
     point: Point
@@ -32,6 +35,7 @@ class Job:
     repeat: int
     control: bool = False
     recorded: bool = False
+    asked: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

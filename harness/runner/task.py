@@ -27,6 +27,7 @@ class Task:
     traced : keep every hit
     pinned : keep it on one core, where the system allows
     recorded : keep what a replay shows; its clocks are not to be used
+    asked : metrics to make that are made on demand alone
     """
 
     point: Point
@@ -36,6 +37,7 @@ class Task:
     traced: bool = False
     pinned: bool = False
     recorded: bool = False
+    asked: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from harness.errors import InputError
 
@@ -23,6 +22,15 @@ class Hull:
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
+
+    @property
+    def inradius(self) -> float:
+        """Radius of the largest sphere around the origin that the hull holds; 0 if the origin is outside."""
+        a, b, c = (self.vertices[corner] for corner in self.faces.T)
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1)
+        heights = np.einsum("ij,ij->i", normals, a)[lengths > 0.0] / lengths[lengths > 0.0]
+        return max(0.0, float(heights.min()))
 
 
 def convex_hull(points: NDArray[np.float64]) -> Hull:
@@ -42,6 +50,8 @@ def convex_hull(points: NDArray[np.float64]) -> Hull:
     InputError
         If the points are too few or too flat to enclose a volume.
     """
+    from scipy.spatial import ConvexHull, QhullError  # half a second, which a run whose mesh is at hand need not spend
+
     # Qt: facets with more than three corners come as triangles. Where that leaves a seam (it can where many
     # points are collinear), QJ moves the points by some 1e-11 of the extent for the search alone.
     for options in ("Qt", "QJ"):

@@ -113,13 +113,6 @@ def test_restitution_cannot_be_swept_over_responses_without_it(complain: Complai
     assert message.endswith("leave it out with `exclude: - {response: reflect, restitution: 0.5}`")
 
 
-def test_predictive_takes_spheres_only(read: Read, complain: Complain) -> None:
-    text = "title: t\nscene: {mesh: cube.ply, count: 1, box_ratio: 1}\nengine: {algorithm: predictive}\n"
-    assert len(read(text + "sweep: {shape: [sphere]}").points) == 1
-    (message,) = complain(text + "sweep: {shape: [sphere, hull]}")
-    assert "exclude: - {algorithm: predictive, shape: hull}" in message
-
-
 def test_too_many_runs_are_refused_before_any_is_made(read: Read, complain: Complain) -> None:
     many = f"[{', '.join(map(str, range(1000)))}]"
     start = time.perf_counter()

@@ -47,15 +47,23 @@ def catch_up(world: World, k: int, now: float) -> None:
 @step
 def rebase(world: World) -> None:
     """Make the present the origin of time. Done every so many events, however the run is cut into pieces."""
+    if world.rules.response == NONE:
+        # Onset times are known again by their bits; those of moved rows differ, so all look again
+        base = world.tally.clock[NOW]
+        for k in range(world.spheres.rows.shape[0]):
+            catch_up(world, k, base)
+            world.spheres.marks[k, KIND] = FRESH
+            world.agenda.times[world.agenda.times.size // 2 + k] = base
+    shift(world)
+
+
+@step
+def shift(world: World) -> None:
+    """Count all times from the present."""
     clock, agenda = world.tally.clock, world.agenda
     base = clock[NOW]
     leaf = agenda.times.size // 2
     for k in range(world.spheres.rows.shape[0]):
-        if world.rules.response == NONE:
-            # Onset times are known again by their bits; those of moved rows differ, so all look again
-            catch_up(world, k, base)
-            world.spheres.marks[k, KIND] = FRESH
-            agenda.times[leaf + k] = base
         world.spheres.rows[k, TIME] -= base
         world.spheres.book[k, TOUCHED] -= base
         world.spheres.book[k, PAIR_TIME] -= base

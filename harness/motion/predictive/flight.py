@@ -10,12 +10,10 @@ from __future__ import annotations
 
 from math import inf
 
-import numpy as np
-
 from harness.kernel import loop, step
 from harness.motion.predictive import tournament
 from harness.motion.predictive.burst import defer_if_stalled
-from harness.motion.predictive.cells import ALL, gather_around, gather_ball, index, insert, remove, settle
+from harness.motion.predictive.cells import ALL, insert, remove, settle
 from harness.motion.predictive.clock import catch_up, rebase, relative
 from harness.motion.predictive.hits import begin_to_touch, hit_pair, hit_wall
 from harness.motion.predictive.lookahead import look_ahead
@@ -59,6 +57,7 @@ from harness.motion.predictive.state import (
     World,
     X,
 )
+from harness.motion.predictive.surroundings import gather, next_face
 
 # Why the loop returned.
 REACHED, SPENT, FULL, CROWDED, UNTIDY = range(5)
@@ -199,31 +198,6 @@ def look(world: World, k: int, now: float, axis: int, step: int) -> None:
 
 
 @step
-def gather(world: World, k: int, now: float, axis: int, step: int) -> int:
-    """Candidates from the cells: one's own grid, coarser grids around, finer grids within reach."""
-    cells, rows, found = world.cells, world.spheres.rows, world.scratch.candidates
-    marks = world.spheres.marks
-    own = int(marks[k, GRID])
-    count = gather_around(cells, own, marks[k, PLACE], marks[k, PLACE + 1], marks[k, PLACE + 2], axis, step, found, 0)
-    if cells.shapes.shape[0] > 1:
-        flown = now - rows[k, TIME]
-        x = rows[k, X] + rows[k, VX] * flown
-        y = rows[k, X + 1] + rows[k, VX + 1] * flown
-        z = rows[k, X + 2] + rows[k, VX + 2] * flown
-        for grid in range(own):
-            ix, iy, iz = index(cells, grid, 0, x), index(cells, grid, 1, y), index(cells, grid, 2, z)
-            count = gather_around(cells, grid, ix, iy, iz, ALL, 0, found, count)
-        if axis == ALL and own < cells.shapes.shape[0] - 1:
-            margin = cells.frames[own, 7]
-            for grid in range(own + 1, cells.shapes.shape[0]):
-                reach = rows[k, RADIUS] + cells.frames[grid, 6] + margin
-                count = gather_ball(cells, grid, x, y, z, reach, found, count)
-            speed = np.sqrt(rows[k, VX] ** 2 + rows[k, VX + 1] ** 2 + rows[k, VX + 2] ** 2)
-            cells.renewals[k] = now + 0.999 * margin / speed if speed > 0.0 else inf
-    return count
-
-
-@step
 def schedule(world: World, k: int, now: float) -> None:
     """The earliest of sphere k's pair candidate, walls, cell faces and renewal goes to its leaf."""
     agenda, rows, cells, rules = world.agenda, world.spheres.rows, world.cells, world.rules
@@ -242,12 +216,10 @@ def schedule(world: World, k: int, now: float) -> None:
         distance = (plane if v > 0.0 else -plane) - x
         target = WALL + 2 * axis + up
         if rules.method == CELLS:
-            place = marks[k, PLACE + axis] + up
-            if 0 < place < cells.shapes[grid, axis]:
-                face = cells.frames[grid, axis] + place * cells.frames[grid, 3 + axis] - x
-                if (face < distance) == (v > 0.0):
-                    distance = face
-                    target = CROSSING + 2 * axis + up
+            face = next_face(cells, grid, axis, marks[k, PLACE + axis] + up, up) - x
+            if (face < distance) == (v > 0.0):
+                distance = face
+                target = CROSSING + 2 * axis + up
         time = begin + time_to_plane(distance, v)
         if time < due:
             due = time

@@ -89,15 +89,28 @@ def begin_to_touch(world: World, k: int, p: int, now: float) -> None:
 
 @step
 def hit_wall(world: World, k: int, face: int, now: float) -> None:
-    """Mirror sphere k's velocity at a face (x-, x+, y-, y+, z-, z+)."""
-    rows, tally = world.spheres.rows, world.tally
+    """A sphere meets a face (x-, x+, y-, y+, z-, z+)."""
+    reach_plane(world, k, face, world.rules.half_box[face // 2] - world.spheres.rows[k, RADIUS], now)
+    turn_back(world, k, face, now)
+
+
+@step
+def reach_plane(world: World, k: int, face: int, plane: float, now: float) -> None:
+    """Sphere k flies to the plane where it meets a face, at this distance from the middle of the box."""
+    rows = world.spheres.rows
     axis = face // 2
-    plane = world.rules.half_box[axis] - rows[k, RADIUS]
     inside = abs(rows[k, X + axis]) <= plane
     catch_up(world, k, now)
     if inside:
         # Exactly on the plane: what time rounds away at any speed cannot add up to an escape
         rows[k, X + axis] = plane if face % 2 == 1 else -plane
+
+
+@step
+def turn_back(world: World, k: int, face: int, now: float) -> None:
+    """Mirror the velocity of sphere k, whose row stands at the present, at a face."""
+    rows, tally = world.spheres.rows, world.tally
+    axis = face // 2
     impulse = 2.0 * world.spheres.book[k, MASS] * abs(rows[k, VX + axis])
     rows[k, VX + axis] = -rows[k, VX + axis]
     add(tally, FACES + face, impulse)

@@ -96,11 +96,11 @@ class Simulation:
         """Fly to `until` (s); what is due at that very time still happens. False if `max_events` hits came first."""
         counts = self._world.tally.counts
         budget = 2**62 if max_events is None else int(counts[PAIR_HITS] + counts[BOX_HITS]) + max_events
-        while (reason := fly(self._world, float(until), budget)) in (FULL, CROWDED, UNTIDY):
+        while (reason := self._fly(float(until), budget)) in (FULL, CROWDED, UNTIDY):
             if reason == FULL:
                 self._chunks.append(self._drain())
             elif reason == CROWDED:
-                self._leave_lists()
+                self._make_room()
             else:
                 tidy(self._world)
                 populate(self._world, True)
@@ -234,7 +234,10 @@ class Simulation:
         counts[RECORDED] = 0
         return chunk
 
-    def _leave_lists(self) -> None:
+    def _fly(self, until: float, budget: int) -> int:
+        return fly(self._world, until, budget)
+
+    def _make_room(self) -> None:
         """A crowd too thick for neighbour lists (spheres on top of each other): go on with cells from this moment."""
         world = self._world
         now = float(world.tally.clock[NOW])

@@ -25,8 +25,9 @@ ROW = 8
 PAIR_TIME, TOUCHED, MASS = 0, 1, 2
 HITS, PARTNER, PARTNER_HITS, KIND, LABEL, BURST, PLACE, GRID = 6, 7, 8, 9, 10, 11, 12, 15
 
-# What a sphere's scheduled event is. Walls and crossings add 2 * axis + (1 if moving up the axis).
-FRESH, PAIR, WALL, CROSSING, RENEWAL, NOTHING = 0, 1, 2, 8, 14, 15
+# What a sphere's scheduled event is. Walls and crossings add 2 * axis + (1 if moving up the axis). A search is for the
+# contact of a shape inside its bounding sphere.
+SEARCH, FRESH, PAIR, WALL, CROSSING, RENEWAL, NOTHING = -1, 0, 1, 2, 8, 14, 15
 
 # Where neighbours come from, and what a touch does.
 CELLS, LISTS = 0, 1
@@ -34,7 +35,8 @@ NONE, REFLECT, ELASTIC = 0, 1, 2
 
 # Entries of `Tally.counts`.
 PAIR_HITS, BOX_HITS, PREDICTIONS, PAIR_TESTS, CROSSINGS, RENEWALS, GUARDED, STALLED, STALE, POPS, RECORDED = range(11)
-MARK_I, MARK_J, REBASINGS = 11, 12, 13
+MARK_I, MARK_J, REBASINGS, NARROW_TESTS, BOX_TESTS, ADVANCES = range(11, 17)
+COUNTS = 17
 # Entries of `Tally.sums`; each has its compensation SUMS places further on.
 PAIR_VIRIAL, WALL_VIRIAL, LOST_ENERGY, LOST_ENERGY_TIME, FACES = 0, 1, 2, 3, 4
 SUMS = 10
@@ -108,7 +110,7 @@ class Rules(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """Counters (16,), compensated sums (20,) and the clock (4,)."""
+    """Counters (COUNTS,), compensated sums (20,) and the clock (4,)."""
 
     counts: Longs
     sums: Floats

@@ -1,0 +1,209 @@
+"""What the scheduler knows of shapes: one hull, in the sizes and turns of the bodies.
+
+Orientations are exact functions of absolute time, exp(w t) q0. Like positions they are counted from a base of time
+that follows the present, and at every new base they are made anew from q0 with the angle in twice the digits: at 10^9 s
+an angle of |w| t, rounded, would be off by 10^-7.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from harness.arrays import Floats, Ints
+from harness.kernel import kernel, step, strict_step
+from harness.motion.predictive.state import EPOCH, EPOCH_REST, TIME, VX, X
+from harness.narrowphase.advancement import Motion
+from harness.narrowphase.support import SupportMap, support_map
+from harness.narrowphase.units import unit_of
+from harness.narrowphase.vectors import Vector
+from harness.scene.bodies import Bodies
+from harness.scene.scene import Scene
+
+Quaternion = tuple[float, float, float, float]
+
+# 2 pi in twice the digits.
+TURN, TURN_REST = 2.0 * pi, 2.4492935982947064e-16
+# Splits a number of 53 bits into two of 26 (Dekker).
+SPLIT = 134217729.0
+
+
+class Form:
+    """What the narrow search needs of a shape, made once for all bodies.
+
+    Parameters
+    ----------
+    scene : Scene of shape `hull` or `mesh`
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        if scene.mesh is None or scene.shape == "sphere":
+            raise ValueError("a sphere has no surface to search")
+        self.hull = support_map(scene.mesh.hull.vertices)
+        self.inradius = scene.mesh.hull.inradius
+
+
+class Solids(NamedTuple):
+    """n bodies of one shape.
+
+    Attributes
+    ----------
+    hull : SupportMap, of diameter 1
+    inradius : of a sphere around the centre that the hull holds
+    sizes : (n,) m, diameters of the bounding spheres
+    reaches : (n,) m, farthest that any point is from its axis of spin through the centre
+    spins : (n, 3) rad/s, in the world
+    rates : (n, 2) |spin| in twice the digits
+    start : (n, 4) orientations at time 0, w x y z
+    turns : (n, 4) orientations at the base of time
+    tolerance : of the mean size of two bodies: gaps below are contact
+    scale : units a metre, a power of two, so that bodies are about 1 across in the narrow phase
+    """
+
+    hull: SupportMap
+    inradius: float
+    sizes: Floats
+    reaches: Floats
+    spins: Floats
+    rates: Floats
+    start: Floats
+    turns: Floats
+    tolerance: float
+    scale: float
+
+
+def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
+    """Solids at time 0, in another order than the bodies.
+
+    Parameters
+    ----------
+    form : Form
+    bodies : Bodies
+    order : (n,) int array, which body comes where
+    tolerance : as in `Solids`
+    """
+    sizes, spins, start = bodies.sizes[order], bodies.spins[order], bodies.quaternions[order]
+    reaches, rates = np.empty(len(sizes)), np.empty((len(sizes), 2))
+    measure(form.hull.vertices, sizes, spins, start, reaches, rates)
+    scale = 1.0 / unit_of(sizes)
+    return Solids(form.hull, form.inradius, sizes, reaches, spins, rates, start, start.copy(), tolerance, scale)
+
+
+@kernel
+def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reaches: Floats, rates: Floats) -> None:
+    """Fill in reaches and rates."""
+    for k in range(len(sizes)):
+        x, y, z = spins[k]
+        high, low = long_norm(x, y, z)
+        rates[k, 0], rates[k, 1] = high, low
+        reaches[k] = 0.5 * sizes[k]
+        if high > 0.0:
+            # the axis stands still in the body too
+            w, a, b, c = start[k]
+            x, y, z = x / high, y / high, z / high
+            s, t, u = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
+            x, y, z = x - w * s + b * u - c * t, y - w * t + c * s - a * u, z - w * u + a * t - b * s
+            farthest = 0.0
+            for vertex in range(len(vertices)):
+                p, q, r = vertices[vertex]
+                along = x * p + y * q + z * r
+                farthest = max(farthest, p * p + q * q + r * r - along * along)
+            reaches[k] = min(reaches[k], sizes[k] * sqrt(farthest) * (1.0 + 1e-12))
+
+
+@step
+def motion_of(body: Solids, rows: Floats, k: int, now: float) -> Motion:
+    """Body k in free flight from the present on, in units."""
+    flown = now - rows[k, TIME]
+    scale = body.scale
+    return Motion(
+        (
+            scale * (rows[k, X] + rows[k, VX] * flown),
+            scale * (rows[k, X + 1] + rows[k, VX + 1] * flown),
+            scale * (rows[k, X + 2] + rows[k, VX + 2] * flown),
+        ),
+        (scale * rows[k, VX], scale * rows[k, VX + 1], scale * rows[k, VX + 2]),
+        turned_by(
+            (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2]),
+            body.rates[k, 0],
+            body.rates[k, 0] * now,
+            (body.turns[k, 0], body.turns[k, 1], body.turns[k, 2], body.turns[k, 3]),
+        ),
+        (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2]),
+        scale * body.sizes[k],
+        scale * body.reaches[k],
+    )
+
+
+@step
+def turn_to_base(body: Solids, clock: Floats) -> None:
+    """Orientations at a new base of time, from those at time 0."""
+    for k in range(body.sizes.size):
+        angle = long_angle(body.rates[k, 0], body.rates[k, 1], clock[EPOCH], clock[EPOCH_REST])
+        spin = (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2])
+        start = (body.start[k, 0], body.start[k, 1], body.start[k, 2], body.start[k, 3])
+        w, x, y, z = turned_by(spin, body.rates[k, 0], angle, start)
+        body.turns[k, 0], body.turns[k, 1], body.turns[k, 2], body.turns[k, 3] = w, x, y, z
+
+
+@step
+def turned_by(spin: Vector, rate: float, angle: float, q: Quaternion) -> Quaternion:
+    """q, turned by an angle about the axis of the spin."""
+    c = cos(0.5 * angle)
+    s = sin(0.5 * angle) / rate if rate > 0.0 else 0.0
+    x, y, z = s * spin[0], s * spin[1], s * spin[2]
+    w0, x0, y0, z0 = q
+    return (
+        c * w0 - x * x0 - y * y0 - z * z0,
+        c * x0 + x * w0 + y * z0 - z * y0,
+        c * y0 - x * z0 + y * w0 + z * x0,
+        c * z0 + x * y0 - y * x0 + z * w0,
+    )
+
+
+@strict_step
+def long_angle(rate: float, rate_rest: float, time: float, time_rest: float) -> float:
+    """(rate + rest) (time + rest), less whole turns, twice over (a quaternion comes back after two)."""
+    turns = np.rint(rate * time / (2.0 * TURN))
+    angle, rest = product(rate, time)
+    whole, whole_rest = product(turns, 2.0 * TURN)
+    rest += rate * time_rest + rate_rest * time - whole_rest - turns * (2.0 * TURN_REST)
+    # both are whole multiples of the same small unit and near each other, so that their difference is exact
+    return float((angle - whole) + rest)
+
+
+@strict_step
+def long_norm(x: float, y: float, z: float) -> tuple[float, float]:
+    """|(x, y, z)| in twice the digits."""
+    high = sqrt(x * x + y * y + z * z)
+    if high == 0.0:
+        return 0.0, 0.0
+    a, a_rest = product(x, x)
+    b, b_rest = product(y, y)
+    c, c_rest = product(z, z)
+    d, d_rest = product(high, high)
+    total, total_rest = longer(a, b)
+    total, rest = longer(total, c)
+    return high, ((total - d) + (rest + total_rest + a_rest + b_rest + c_rest - d_rest)) / (2.0 * high)
+
+
+@strict_step
+def longer(a: float, b: float) -> tuple[float, float]:
+    """a + b, and what rounding took of it (Knuth)."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
+
+
+@strict_step
+def product(a: float, b: float) -> tuple[float, float]:
+    """a b, and what rounding took of it (Dekker)."""
+    high = a * b
+    p = SPLIT * a
+    a1 = p - (p - a)
+    p = SPLIT * b
+    b1 = p - (p - b)
+    a2, b2 = a - a1, b - b1
+    return high, ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2
