@@ -21,8 +21,9 @@ KNOWS = {
     "store": set(),
     "compare": GEOMETRY | {"motion", "measure"},
     "runner": GEOMETRY | {"experiment", "measure", "motion", "store"},
-    "report": {"store", "measure"},
-    "cli": GEOMETRY | {"experiment", "measure", "motion", "store", "compare", "runner", "report"},
+    "replay": {"store"},
+    "report": {"store", "measure", "replay"},
+    "cli": GEOMETRY | {"experiment", "measure", "motion", "store", "compare", "runner", "replay", "report"},
 }
 
 

@@ -17,6 +17,7 @@ COMMANDS = {
     "compare": "hold backends against each other and against exact arithmetic",
     "trace": "print the hits of one run",
     "plan": "print what each run does, what it leaves out, and why",
+    "view": "replay a run in the browser, or try settings live",
     "validate": "check experiment files and say every error",
     "list": "print experiments, backends, algorithms and metrics",
     "export": "print the measurements as CSV or JSON",

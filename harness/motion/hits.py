@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
+from harness.motion.course import Course
 from harness.scene.box import WALLS
 
 
@@ -85,7 +86,8 @@ class Trace:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a motion reports: metrics by name, and a trace if one was asked for."""
+    """What a motion reports: metrics by name, and a trace and a course if they were asked for."""
 
     metrics: dict[str, float]
     trace: Trace | None
+    course: Course | None = None

@@ -14,6 +14,7 @@ from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.measure.clocks import Clock
 from harness.measure.conservation import Conservation, energy
 from harness.measure.kinetics import Kinetics
+from harness.motion.course import CourseLog
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Flight
 from harness.motion.plan import Plan
@@ -38,6 +39,7 @@ def fly_predicted(
     restitution: float = 1.0,
     tolerance: float = 1e-6,
     traced: bool = False,
+    recorded: bool = False,
 ) -> Outcome:
     """Fly a scene for `duration` (s), event by event.
 
@@ -49,6 +51,7 @@ def fly_predicted(
     response, restitution : see `harness.motion.response`
     tolerance : of size; surfaces nearer than that touch. Spheres need none
     traced : keep every event
+    recorded : keep the course of every body; the clock of such a flight sees it
 
     Returns
     -------
@@ -58,6 +61,7 @@ def fly_predicted(
     bodies = scene.bodies
     conservation, kinetics = Conservation(bodies), Kinetics(scene, response, restitution)
     depth = _Depth(scene) if plan.keeps("penetration") else None
+    course = CourseLog(bodies.positions, bodies.velocities) if recorded else None
     form = None if scene.shape == "sphere" else Form(scene)
     clock = Clock("run_seconds")
     if form is None:
@@ -77,7 +81,11 @@ def fly_predicted(
     outside = np.zeros(len(bodies), np.bool_)
     for look in range(1, LOOKS + 1):
         clock.start()
-        simulation.advance(duration * look / LOOKS)
+        until = duration * look / LOOKS
+        if course is not None:
+            course.follow(simulation, until)
+        else:
+            simulation.advance(until)
         clock.lap("run_seconds")
         positions, velocities = simulation.positions, simulation.velocities
         refuse_lost(positions, velocities, simulation.time)
@@ -108,7 +116,8 @@ def fly_predicted(
         metrics["momentum_drift"] = conservation.momentum_drift
     if depth is not None:
         metrics["max_penetration"] = depth.deepest
-    return Outcome(metrics, _trace(scene, simulation, duration, counted) if traced else None)
+    trace = _trace(scene, simulation, duration, counted) if traced else None
+    return Outcome(metrics, trace, course.course() if course is not None else None)
 
 
 class _Depth:

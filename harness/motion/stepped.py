@@ -13,6 +13,7 @@ from harness.arrays import Flags
 from harness.backends.protocol import Backend, counters
 from harness.measure.clocks import Clock
 from harness.measure.conservation import energy
+from harness.motion.course import CourseLog, folded_course
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Flight
 from harness.motion.observer import Folds, Observer, Onsets
@@ -34,6 +35,7 @@ def fly_stepped(
     response: Response,
     restitution: float = 1.0,
     traced: bool = False,
+    recorded: bool = False,
 ) -> Outcome:
     """Fly a scene in frames at k dt, k = 1 … frames.
 
@@ -45,6 +47,7 @@ def fly_stepped(
     frames, dt : number and length (s) of the frames
     response, restitution : see `harness.motion.response`
     traced : keep every hit
+    recorded : keep the course of every body
 
     Returns
     -------
@@ -55,6 +58,7 @@ def fly_stepped(
     observer = Observer(scene, flight, penetration=plan.keeps("penetration"), traced=traced)
     answers = None if response == "none" else Answers(scene.bodies.masses, response, restitution)
     touching_walls = _wall_test(scene, plan)
+    course = CourseLog(flight.positions, flight.velocities) if recorded and answers else None
     onsets, folds = Onsets(len(scene.bodies)), Folds(flight)
     pairs = np.empty((0, 2), np.int64)
     clock = Clock("pair_seconds", "response_seconds", "box_seconds")
@@ -76,6 +80,8 @@ def fly_stepped(
         flight.redirect(answers.changed, time)
         clock.lap("box_seconds")
         observer.frame(time, pairs, hits, walls)
+        if course is not None:
+            course.turn(time, flight.positions, flight.velocities)
 
     refuse_lost(flight.positions, flight.velocities, frames * dt)
     counted: dict[str, float] = {
@@ -94,7 +100,10 @@ def fly_stepped(
         **_clock_metrics(clock, frames, end),
         **_errors(observer, answers, plan),
     }
-    return Outcome(metrics, _trace(scene, flight, observer, end, counted) if traced else None)
+    trace = _trace(scene, flight, observer, end, counted) if traced else None
+    if course is not None:
+        return Outcome(metrics, trace, course.course())
+    return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
 
 
 def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:

@@ -33,6 +33,7 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.replay import Replay, replay_of
 from harness.report.stability import MEANINGS, SIGNS, Matrix, is_case, matrix
 from harness.report.summary import summary
 from harness.report.sweeps import facts as sweep_facts
@@ -148,7 +149,8 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     further = [file for file, there in present if there]
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
-        yield from _experiment(environment, page, elsewhere, claims, further)
+        replay = replay_of(database, page.record)
+        yield from _experiment(environment, page, elsewhere, claims, further, replay)
     yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
     if accuracy:
         yield from _accuracy(environment, accuracy, claims, further, records)
@@ -186,7 +188,12 @@ def _navigation(up: str, claims: bool, further: Sequence[str], here: Link | None
 
 
 def _experiment(
-    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, further: Sequence[str]
+    environment: Environment,
+    page: ExperimentPage,
+    elsewhere: Sequence[Row],
+    claims: bool,
+    further: Sequence[str],
+    replay: Replay | None,
 ) -> Iterator[tuple[str, str]]:
     published = published_section(page, elsewhere)
     drawn = [*page.figures, page.exponent_figure, published.figure if published else None]
@@ -206,12 +213,15 @@ def _experiment(
         page=page,
         published=published,
         verdicts=verdicts,
-        contents=_contents(page, published is not None),
+        replay=replay,
+        contents=_contents(page, published is not None, replay is not None),
         environment=[*_facts(page.record.sweep), *page.conditions],
         downloads=downloads,
         footer=_footer([page.record]),
     )
     yield f"{page.folder}/index.html", text
+    if replay is not None:
+        yield f"{page.folder}/{replay.file}", replay.page
     yield f"{page.folder}/runs.csv", page.csv
     yield f"{page.folder}/specification.yaml", page.record.source
     yield f"{page.folder}/environment.json", json.dumps(page.environment, indent=2, ensure_ascii=False) + "\n"
@@ -219,7 +229,7 @@ def _experiment(
         yield f"{page.folder}/{figure.file}", figure.document
 
 
-def _contents(page: ExperimentPage, published: bool) -> list[tuple[str, str]]:
+def _contents(page: ExperimentPage, published: bool, replay: bool) -> list[tuple[str, str]]:
     entries = (
         ("findings", "Findings", True),
         ("figures", "Figures", bool(page.figures)),
@@ -229,6 +239,7 @@ def _contents(page: ExperimentPage, published: bool) -> list[tuple[str, str]]:
         ("claims", "Claims", bool(page.record.claims)),
         ("expectations", "Expectations", bool(page.record.expectations)),
         ("published", "Published", published),
+        ("replay", "Replay", replay),
         ("plan", "Plan", bool(page.stages)),
         ("reading", "How to read", True),
         ("reproduce", "Reproduce", True),

@@ -22,11 +22,13 @@ from harness.motion.predicted import fly_predicted
 from harness.motion.soundness import NotANumberError
 from harness.motion.stepped import fly_stepped
 from harness.runner import accuracy
+from harness.runner.recording import recording_of
 from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
 from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.store.recording import Recording
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Result:
     plan: Plan
     trace: Trace | None = None
     flights: int = 1
+    recording: Recording | None = None
 
 
 def execute(
@@ -45,6 +48,7 @@ def execute(
     *,
     memory: int | None = None,
     traced: bool = False,
+    recorded: bool = False,
     asked: Collection[str] = (),
 ) -> Result:
     """Run a point once, in this process.
@@ -55,6 +59,7 @@ def execute(
     mesh : the mesh its scene names
     memory : B that the scene may need
     traced : keep every hit
+    recorded : keep what a replay shows, and measure nothing else: the clocks of such a run see it
     asked : metrics that are made on demand alone, and are demanded
 
     Raises
@@ -69,11 +74,13 @@ def execute(
     scene = build_scene(point, mesh, memory)
     plan = plan_of(point, scene)
     # what a stepped run watches is outside of its clocks; a predictive one would keep its events within them
-    watched = traced or (point.reference is not None and point.engine.algorithm != "predictive")
-    fly = _flight(point, scene, plan, watched)
+    watched = traced or recorded or (point.reference is not None and point.engine.algorithm != "predictive")
+    fly = _flight(point, scene, plan, watched, recorded=recorded)
     clock.lap("setup_seconds")
-    outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
+    outcome, flights = (fly(), 1) if traced or recorded else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
+    if recorded:
+        return Result(metrics, plan, flights=flights, recording=recording_of(point, scene, outcome))
     metrics |= invariance(asked, scene, partial(_hits, point, plan=plan))
     if point.reference is not None and not traced:
         metrics |= accuracy.errors(point, mesh, outcome.trace or _hits(point, scene), _hits)
@@ -81,13 +88,16 @@ def execute(
     return Result(metrics, plan, outcome.trace if traced else None, flights)
 
 
-def _flight(point: Point, scene: Scene, plan: Plan, traced: bool, slower: float = 1.0) -> Callable[[], Outcome]:
+def _flight(
+    point: Point, scene: Scene, plan: Plan, traced: bool, slower: float = 1.0, recorded: bool = False
+) -> Callable[[], Outcome]:
     """One flight of the scene, from its start, whenever it is called; what it needs is loaded.
 
     `slower` is by how much its duration and its frames are longer than the point says.
     """
     motion = point.motion
-    answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
+    answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution}
+    answers |= {"traced": traced, "recorded": recorded}
     if point.engine.algorithm == "predictive":
         tolerance = point.engine.tolerance
         return partial(fly_predicted, scene, plan, duration=motion.duration * slower, tolerance=tolerance, **answers)

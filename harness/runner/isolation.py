@@ -152,8 +152,18 @@ def _reported(task: Task, mesh: Mesh | None) -> bytes:
     memory = Report("memory", f"needed more than {task.memory / 2**30:.3g} GiB")
     try:
         try:
-            result = execute(task.point, mesh, memory=task.memory, traced=task.traced, asked=task.asked)
-            report = Report("ok", None, result.metrics, result.plan, result.trace, {"flights": result.flights})
+            result = execute(
+                task.point, mesh, memory=task.memory, traced=task.traced, recorded=task.recorded, asked=task.asked
+            )
+            report = Report(
+                "ok",
+                None,
+                result.metrics,
+                result.plan,
+                result.trace,
+                {"flights": result.flights},
+                recording=result.recording,
+            )
         except MemoryError:
             report = memory
         except (PlacementError, SceneSizeError, InputError) as error:

@@ -24,7 +24,7 @@ METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to do: a repeat of a point, for the first experiment that lists it; or its control.
+    """One run to do: a repeat of a point, for the first experiment that lists it; or its control, or its recording.
 
     `asked` are the metrics made on demand that any of the experiments names that list it.
     """
@@ -34,6 +34,7 @@ class Job:
     key: str
     repeat: int
     control: bool = False
+    recorded: bool = False
     asked: frozenset[str] = frozenset()
 
 

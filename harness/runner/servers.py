@@ -81,6 +81,7 @@ def task_of(
     *,
     traced: bool = False,
     pinned: bool = False,
+    recorded: bool = False,
     asked: frozenset[str] | None = None,
 ) -> tuple[Task, Mesh | None]:
     """A run of a point under the limits of its experiment, and the mesh that it needs.
@@ -89,7 +90,8 @@ def task_of(
     """
     mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
     asked = asked_of(experiment) if asked is None else asked
-    return Task(point, mesh.digest if mesh else None, limits.timeout, limits.memory, traced, pinned, asked), mesh
+    digest = mesh.digest if mesh else None
+    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, asked), mesh
 
 
 def asked_of(experiment: Experiment) -> frozenset[str]:

@@ -23,6 +23,7 @@ from harness.motion.hits import Trace
 from harness.runner.estimate import Estimate
 from harness.runner.executor import Alone, Done, Executor
 from harness.runner.key import point_key
+from harness.runner.recording import worth_recording
 from harness.runner.schedule import Choice, Job, Schedule, schedule
 from harness.runner.servers import Servers, asked_of, mesh_of, task_of
 from harness.runner.setting import derived_parameters
@@ -187,6 +188,9 @@ def sweep(
             _count(summary, done)
             work.estimate.learn(done.job, done.report.conditions.get("seconds", 0.0))
             watch.after(done.job, done.report)
+        for done in doing.run(_recordings(experiments, work.keys, database), meshes, lambda _: None):
+            if done.report.recording is not None:
+                database.add_recording(done.job.key, done.report.recording)
     refused: set[tuple[str, int]] = set()
     for experiment in experiments:
         table = runs(database.path, [experiment.name])
@@ -222,6 +226,19 @@ def _keep(database: Database, sweep: int, done: Done) -> None:
         machine=done.machine,
         conditions=report.conditions,
     )
+
+
+def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], database: Database) -> list[Job]:
+    """Of each experiment the scene that its page should replay, where that is still to be recorded."""
+    jobs: dict[str, Job] = {}
+    for experiment in experiments:
+        points = {keys[id(point)]: point for point in experiment.points}
+        if experiment.measure.tier == "long" or database.recorded(points):
+            continue
+        key = worth_recording(list(points), runs(database.path, [experiment.name]))
+        if key is not None:
+            jobs.setdefault(key, Job(experiment, points[key], key, 0, recorded=True))
+    return list(jobs.values())
 
 
 def _count(summary: Summary, done: Done) -> None:

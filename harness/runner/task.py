@@ -9,6 +9,7 @@ from typing import Literal
 from harness.experiment.experiment import Point
 from harness.motion.hits import Trace
 from harness.motion.plan import Plan
+from harness.store.recording import Recording
 
 Status = Literal["ok", "failed", "timeout", "memory", "crashed", "rejected"]
 
@@ -25,6 +26,7 @@ class Task:
     memory : B that it may use
     traced : keep every hit
     pinned : keep it on one core, where the system allows
+    recorded : keep what a replay shows; its clocks are not to be used
     asked : metrics to make that are made on demand alone
     """
 
@@ -34,6 +36,7 @@ class Task:
     memory: int
     traced: bool = False
     pinned: bool = False
+    recorded: bool = False
     asked: frozenset[str] = frozenset()
 
 
@@ -46,6 +49,7 @@ class Report:
     status, reason : how it ended, and why, in a sentence, if not well
     conditions : what it met: see `harness.measure.conditions`; and `flights`, how often the scene was flown
     stderr : the tail of what it printed
+    recording : what a replay shows, if it was asked for
     """
 
     status: Status
@@ -55,6 +59,7 @@ class Report:
     trace: Trace | None = None
     conditions: Mapping[str, float] = field(default_factory=dict)
     stderr: str = ""
+    recording: Recording | None = None
 
     def with_circumstances(self, stderr: str, conditions: Mapping[str, float]) -> Report:
         """The same report with what the run printed and met."""

@@ -21,6 +21,7 @@ from harness.errors import InputError
 from harness.store.connection import open_for_writing, told
 from harness.store.history import History
 from harness.store.lock import SweepLock
+from harness.store.recording import Recording, recorded, write
 from harness.store.records import PointRow, Status, VerdictKind, VerdictRow
 
 
@@ -233,6 +234,27 @@ class Database:
                     for place, row in enumerate(rows)
                 ),
             )
+
+    def add_recording(self, key: str, recording: Recording) -> None:
+        """Keep what a replay shows of a point, with its newest run that is ok; that run must have none yet.
+
+        Raises
+        ------
+        KeyError
+            No run of the point is ok.
+        """
+        with self._transaction() as connection:
+            (run,) = connection.execute(
+                "SELECT max(run.id) FROM run JOIN point ON point.id = run.point WHERE key = ? AND status = 'ok'", (key,)
+            ).fetchone()
+            if run is None:
+                raise KeyError(key)
+            write(connection, run, recording)
+
+    def recorded(self, keys: Iterable[str]) -> set[str]:
+        """Those of the points, by their keys, that have a recording."""
+        with told(self.path):
+            return recorded(self._connection, keys)
 
     def add_comparison(
         self, command: str, experiment: str, backends: tuple[str, str], key: str, document: Mapping[str, Any]

@@ -1,4 +1,4 @@
--- The results database. Measurements (run, metric, control, event, frame) are only ever added; a point that is measured again gets
+-- The results database. Measurements (run, metric, control, recording, event, frame) are only ever added; a point that is measured again gets
 -- further runs, and `current_run` shows the newest of each repeat. JSON columns hold JSON text.
 
 CREATE TABLE machine (
@@ -89,12 +89,28 @@ CREATE TABLE event (
     PRIMARY KEY (run, place)
 ) WITHOUT ROWID;
 
+-- The moments at which bodies begin a straight leg; all of them do at time 0.
 CREATE TABLE frame (
     run   INTEGER NOT NULL REFERENCES run,
     place INTEGER NOT NULL,
     time  REAL NOT NULL,                    -- s
-    data  BLOB NOT NULL,
+    data  BLOB NOT NULL,                    -- a row a body whose velocity is new: number, position x y z, velocity x y z
     PRIMARY KEY (run, place)
+);
+
+-- What a replay shows, of a run whose scene was flown once more for it; its hits are in `event`, its legs in `frame`.
+CREATE TABLE recording (
+    run    INTEGER PRIMARY KEY REFERENCES run,
+    facts  TEXT NOT NULL,                   -- JSON, {shape, duration, dt, half_box}
+    bodies BLOB NOT NULL,                   -- little-endian doubles, a row a body: size, quaternion w x y z, spin x y z
+    mesh   TEXT REFERENCES mesh             -- NULL for spheres without one
+);
+
+CREATE TABLE mesh (
+    digest   TEXT PRIMARY KEY,
+    name     TEXT NOT NULL,
+    vertices BLOB NOT NULL,                 -- little-endian doubles, x y z; the bounding sphere has diameter 1
+    faces    BLOB NOT NULL                  -- little-endian 32-bit numbers of vertices, three a face
 );
 
 CREATE TABLE expectation (

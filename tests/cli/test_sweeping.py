@@ -8,6 +8,7 @@ import pytest
 
 import harness
 from harness.cli.main import main
+from harness.store.recording import recording_of
 
 EXPERIMENT = """
 title: Small
@@ -64,6 +65,11 @@ def test_a_sweep_keeps_every_run_and_the_next_does_only_what_is_missing(small, c
     assert all(counters[count, "fcl"] == counters[count, "pybullet"] for count in (2, 4, 8, 16))
     assert [claim["verdict"] for claim in document["claims"]] == ["holds"]
     assert [row["verdict"] for row in document["expectations"]] == ["holds"]
+    shown = recording_of("results/results.db", "small")  # the fullest scene, for its page
+    assert shown.parameters["count"] == 16
+    assert counters[16, "fcl"] == {
+        (int((shown.recording.hit_walls < 0).sum()), int((shown.recording.hit_walls >= 0).sum()))
+    }
 
 
 def test_a_failed_run_is_a_row_with_its_reason_and_the_exit_code_says_so(small, capsys):

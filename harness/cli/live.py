@@ -1,0 +1,156 @@
+"""`harness view --live`: the first point of an experiment, with settings that a person changes on a page."""
+
+from __future__ import annotations
+
+import json
+import signal
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from harness.backends import registry
+from harness.cli.list import ALGORITHMS
+from harness.errors import InputError
+from harness.experiment.experiment import Experiment, Point
+from harness.experiment.leaves import LEAVES
+from harness.experiment.load import load_text
+from harness.replay.document import document
+from harness.replay.live import LiveServer
+from harness.replay.page import Setting, live_page
+from harness.runner.servers import Servers, mesh_of, task_of
+from harness.runner.setting import derived_parameters
+from harness.runner.task import Report
+from harness.scene.mesh import Mesh
+
+# More than this is counted and timed, but not shown: a browser would choke on it.
+MOST_BODIES = 5000
+MOST_HITS = 200_000
+COLUMNS = (
+    *("algorithm", "backend", "shape", "bodies", "crowding", "speed", "body hits", "wall hits", "pair tests"),
+    *("CPU time, ms", "simulated s per s"),
+)
+
+Meshes = Mapping[Path, Mesh]
+
+
+def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -> int:
+    """Serve the live page until Ctrl-C.
+
+    Parameters
+    ----------
+    experiment, meshes : loaded and opened; its first point is what the page begins with
+    show : opens an address
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell has started it in the background
+    settings = _settings(experiment, meshes)
+    with Servers() as servers:
+
+        def answer(asked: Mapping[str, str]) -> Mapping[str, Any]:
+            return _answer(experiment, meshes, servers, {one.name: one.value for one in settings}, asked)
+
+        with LiveServer(live_page(experiment.title, settings, COLUMNS), answer) as server:
+            print(f"{server.address}  (Ctrl-C stops it)", flush=True)
+            show(server.address)
+            with suppress(KeyboardInterrupt):
+                server.serve_forever()
+            servers.interrupt()  # a run that is in flight is not waited for
+    return 0
+
+
+def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
+    """What can be changed, with the values of the first point."""
+    point = experiment.points[0]
+    leaves = point.parameters
+    ratio = leaves["box_ratio"] or _mean_size(point) ** 2 / derived_parameters(point, None)["box_side"] ** 2
+    shapes = ("sphere",) if point.scene.mesh is None else ("sphere", "hull", "mesh")
+    found = [
+        Setting("algorithm", "algorithm", leaves["algorithm"], tuple(ALGORITHMS)),
+        Setting("backend", "backend", leaves["backend"], tuple(registry.names())),
+        Setting("shape", "shape", leaves["shape"], shapes),
+        Setting("box_ratio", "crowding (size / side)²", f"{ratio:.4g}"),
+    ]
+    if point.scene.bodies is None:  # bodies that are given one by one have their number and speeds
+        found.insert(3, Setting("count", "number of bodies", str(leaves["count"]), inputmode="numeric"))
+        found.append(Setting("speed", "speed, m/s", json.dumps(leaves["speed"]).replace('"', ""), inputmode="text"))
+    return found
+
+
+def _mean_size(point: Point) -> float:
+    if point.scene.bodies is None:
+        return float(point.scene.size.mean)
+    return sum(body.size for body in point.scene.bodies) / len(point.scene.bodies)
+
+
+def _answer(
+    experiment: Experiment, meshes: Meshes, servers: Servers, first: Mapping[str, str], asked: Mapping[str, str]
+) -> dict[str, Any]:
+    """Run the first point with what was changed: measured, then recorded."""
+    changed = {name: text for name, text in asked.items() if name in first and text.strip() != first[name]}
+    try:
+        now = load_text(_alone(experiment), experiment.path, changed)
+    except InputError as error:
+        return {"error": " ".join(_sentence(problem.message) for problem in error.problems)}
+    point = now.points[0]
+    report = servers.run(*task_of(now, point, meshes))
+    if report.status != "ok":
+        return {"error": _sentence(f"the run did not come to its end ({report.status}): {report.reason}")}
+    answer: dict[str, Any] = {"said": _said(report), "row": _row(point, mesh_of(now, point, meshes), report)}
+    bodies = point.scene.count if point.scene.bodies is None else len(point.scene.bodies)
+    if (bodies or 0) > MOST_BODIES or report.metrics["events"] > MOST_HITS:
+        answer["said"] += f" Too much to show: at most {MOST_BODIES} bodies and {MOST_HITS} hits are."
+        return answer
+    shown = servers.run(*task_of(now, point, meshes, recorded=True))
+    if shown.recording is None:
+        answer["said"] += f" It cannot be shown: {shown.reason}."
+    else:
+        answer["recording"] = document(shown.recording, now.title)
+    return answer
+
+
+def _alone(experiment: Experiment) -> str:
+    """An experiment of the first point alone, as text."""
+    file: dict[str, Any] = {"title": experiment.title, "scene": {}, "motion": {}, "engine": {}}
+    for name, value in experiment.points[0].parameters.items():
+        if value is not None:
+            file[LEAVES[name].section][name] = value
+    limits = experiment.measure
+    file["measure"] = {"repeats": 1, "timeout": limits.timeout, "memory": limits.memory}
+    return str(yaml.safe_dump(file))
+
+
+def _sentence(message: str) -> str:
+    said = message.removeprefix("--set ")  # that is how the settings are handed on; nobody has typed it
+    text = said if said != message else said[0].upper() + said[1:]
+    return text if text.endswith(".") else f"{text}."
+
+
+def _said(report: Report) -> str:
+    found = report.metrics
+    hits = f"{found['pair_hits']:.0f} hits between bodies and {found['box_hits']:.0f} at walls"
+    sentences = [f"{hits}, found in {_milliseconds(report)} ms of CPU time."]
+    warnings = report.plan.warnings if report.plan else ()
+    return " ".join([*sentences, *(_sentence(warning) for warning in warnings)])
+
+
+def _row(point: Point, mesh: Mesh | None, report: Report) -> list[str]:
+    leaves, found = {**point.parameters, **derived_parameters(point, mesh)}, report.metrics
+    count = leaves["count"] if leaves["bodies"] is None else len(leaves["bodies"])
+    ratio = leaves["box_ratio"] or _mean_size(point) ** 2 / leaves["box_side"] ** 2
+    return [
+        leaves["algorithm"],
+        leaves["backend"],
+        leaves["shape"],
+        str(count),
+        f"{ratio:.4g}",
+        json.dumps(leaves["speed"]).replace('"', ""),
+        *(f"{found[name]:.0f}" if name in found else "–" for name in ("pair_hits", "box_hits", "pair_tests")),
+        _milliseconds(report),
+        f"{found['simulated_per_second']:.4g}" if "simulated_per_second" in found else "–",
+    ]
+
+
+def _milliseconds(report: Report) -> str:
+    return f"{1000 * report.metrics['run_seconds']:.3g}"

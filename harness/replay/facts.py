@@ -1,0 +1,34 @@
+"""What stands beside a replay: the settings of its run, and what was counted."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from harness.replay.document import Fact
+
+_SETTINGS = (
+    *("backend", "algorithm", "shape", "mesh", "count", "size", "speed", "spin", "packing", "box_ratio", "box"),
+    *("response", "restitution", "overlap", "duration", "dt", "seed"),
+)
+_COUNTERS = ("pair_hits", "box_hits", "pair_tests", "narrow_tests", "box_tests", "predictions")
+_THIN = "\u202f"
+
+
+def facts(parameters: Mapping[str, Any], counters: Mapping[str, float]) -> list[Fact]:
+    """Names and values, for people.
+
+    Parameters
+    ----------
+    parameters : leaves of the point
+    counters : of its run
+    """
+    found = [(name, _said(parameters[name])) for name in _SETTINGS if parameters.get(name) is not None]
+    return found + [(name, f"{counters[name]:,.0f}".replace(",", _THIN)) for name in _COUNTERS if name in counters]
+
+
+def _said(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return value if isinstance(value, str) else json.dumps(value).translate({ord(sign): None for sign in '{}"'})

@@ -1,0 +1,104 @@
+"""A still picture of a recording's first moment, for pages without WebGL or without a script.
+
+Triangles are painted from the farthest to the nearest, lit by one lamp, at twice the size and then made smaller.
+"""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+from fast_simplification import simplify
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+from scipy.spatial.transform import Rotation
+from trimesh.creation import icosphere
+
+from harness.arrays import Floats
+from harness.replay.document import start_positions
+from harness.store.recording import Recording
+
+WIDTH, HEIGHT = 800, 500
+_FINE = 2  # painted at so many times the size
+_MOST_TRIANGLES = 24_000
+_TURN, _TILT, _FIELD = 0.62, 0.42, 0.62  # as the viewer's first view, rad
+_BODY, _EDGE = np.array([224.0, 148.0, 26.0]), (141, 147, 161, 255)
+_COLOURS = 96
+
+
+def still(recording: Recording) -> bytes:
+    """A PNG with a transparent background, the same bytes for the same recording."""
+    image = Image.new("RGBA", (WIDTH * _FINE, HEIGHT * _FINE), (0, 0, 0, 0))
+    draw = ImageDraw.Draw(image)
+    eye, axes = _camera(recording.half_box)
+    _draw_box(draw, recording.half_box, eye, axes)
+    if len(recording):
+        _draw_bodies(draw, recording, eye, axes)
+    buffer = io.BytesIO()
+    small = image.resize((WIDTH, HEIGHT), Image.Resampling.BOX)
+    small.quantize(_COLOURS, method=Image.Quantize.FASTOCTREE).save(buffer, format="PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def _camera(half: Floats) -> tuple[Floats, Floats]:
+    """Where it stands, m, and its axes: right, up, back."""
+    back = np.array([np.cos(_TILT) * np.sin(_TURN), -np.cos(_TILT) * np.cos(_TURN), np.sin(_TILT)])
+    right = np.cross([0.0, 0.0, 1.0], back)
+    right /= np.linalg.norm(right)
+    axes = np.array([right, np.cross(back, right), back])
+    distance = 0.93 * float(np.linalg.norm(half)) / np.sin(_FIELD / 2)
+    corners = (np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half) @ axes.T
+    aside = corners[:, :2] / (distance - corners[:, 2:]) * distance
+    middle = (aside.min(axis=0) + aside.max(axis=0)) / 2  # of the picture of the box, which perspective puts off centre
+    return back * distance + middle @ axes[:2], axes
+
+
+def _on_paper(points: Floats, eye: Floats, axes: Floats) -> tuple[Floats, Floats]:
+    """(…, 2) px and (…) depths, m, of (…, 3) points, m."""
+    seen = (points - eye) @ axes.T
+    depth = -seen[..., 2]
+    scale = HEIGHT * _FINE / 2 / np.tan(_FIELD / 2)
+    flat = np.stack([seen[..., 0], -seen[..., 1]], axis=-1) / depth[..., None] * scale
+    return flat + np.array([WIDTH, HEIGHT]) * _FINE / 2, depth
+
+
+def _draw_box(draw: ImageDraw.ImageDraw, half: Floats, eye: Floats, axes: Floats) -> None:
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
+    flat, _ = _on_paper(corners, eye, axes)
+    for a in range(8):
+        for bit in (1, 2, 4):
+            if not a & bit:
+                draw.line([tuple(flat[a]), tuple(flat[a | bit])], fill=_EDGE, width=_FINE)
+
+
+def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, axes: Floats) -> None:
+    vertices, faces = _form(recording)
+    turns = Rotation.from_quat(recording.quaternions, scalar_first=True).as_matrix()
+    placed = np.einsum("nij,vj->nvi", turns, vertices) * recording.sizes[:, None, None]
+    corners = (placed + start_positions(recording)[:, None, :])[:, faces].reshape(-1, 3, 3)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    facing = ((eye - corners[:, 0]) * normals).sum(axis=1) > 0.0
+    corners, normals = corners[facing], normals[facing]
+    lamp = np.array([-0.75, 1.0, 0.9]) @ axes
+    light = 0.38 + 0.14 * (normals @ axes[1]) + 0.62 * np.maximum(normals @ (lamp / np.linalg.norm(lamp)), 0.0)
+    flat, depth = _on_paper(corners, eye, axes)
+    order = np.argsort(-depth.mean(axis=1), kind="stable")
+    colours = np.clip(_BODY * light[:, None], 0, 255).astype(np.int64) @ [1, 2**8, 2**16] + 255 * 2**24
+    for triangle, colour in zip(flat[order].reshape(-1, 6).tolist(), colours[order].tolist(), strict=True):
+        draw.polygon(triangle, fill=colour)
+
+
+def _form(recording: Recording) -> tuple[Floats, NDArray[Any]]:
+    """Vertices and faces of one body of diameter 1, so coarse that all bodies together can be painted."""
+    most = max(20, _MOST_TRIANGLES // len(recording))
+    if recording.surface is None:
+        halvings = max(1, min(3, int(np.log(most / 20) / np.log(4))))
+        ball = icosphere(subdivisions=halvings, radius=0.5)
+        return np.asarray(ball.vertices), np.asarray(ball.faces)
+    vertices, faces = recording.surface.vertices, recording.surface.faces
+    if len(faces) <= most:
+        return vertices, faces
+    coarse, corners = simplify(vertices.copy(), faces.copy(), target_count=max(most, 60))  # it wants to write
+    return np.asarray(coarse, np.float64), np.asarray(corners)

@@ -1,0 +1,271 @@
+// The replay: what is on the page, and how a time, a choice or a key changes it.
+
+import { Camera, bodyUnder, steer } from "./camera.js";
+import { Clock } from "./clock.js";
+import { HitList } from "./hitlist.js";
+import { Stage } from "./stage.js";
+import { Timeline } from "./timeline.js";
+
+const GLOW = 0.3; // s, at speed 1, for which a hit can be seen
+const AHEAD = 400; // legs of a path drawn at the most
+const NAMES = ["page", "panel", "ink", "edge", "plain", "met", "wall", "chosen", "halo"];
+const by = (id) => document.getElementById(id);
+
+export class Replay {
+  constructor() {
+    this.camera = new Camera();
+    this.clock = new Clock(() => this._stale());
+    this.timeline = new Timeline(by("timeline"));
+    this.list = new HitList(by("hits"), (hit) => this.goTo(this.recording.hit_times[hit], this.recording.nameOf(hit)));
+    this.chosen = -1;
+    this.canvas = by("stage");
+    try {
+      this.stage = new Stage(this.canvas);
+      document.documentElement.classList.add("drawn");
+      steer(this.canvas, this.camera, () => this._stale(), (x, y) => this._pick(x, y));
+    } catch (error) {
+      by("nothing").hidden = false;
+    }
+    this._colours();
+    this._listen();
+  }
+
+  /** Show a recording, from its start. */
+  show(recording) {
+    this.recording = recording;
+    this.clock.load(recording.duration, recording.step);
+    this.timeline.load(recording);
+    if (this.stage) this.stage.load(recording);
+    by("time").max = recording.duration;
+    by("time").step = "any";
+    by("body").max = recording.count - 1;
+    for (const id of ["play", "before", "after", "back", "on", "time"]) by(id).disabled = !recording.duration;
+    this.choose(this.chosen < recording.count ? this.chosen : -1);
+    this._stale();
+  }
+
+  /** Begin to play, unless people have asked their system for less motion. */
+  begin() {
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.clock.play(true);
+  }
+
+  /** Stop at a time, and say what happens there. */
+  goTo(time, what = "") {
+    this.clock.playing = false;
+    this.clock.seek(time);
+    this._say(what);
+  }
+
+  /** Choose a body, or none (-1). */
+  choose(body) {
+    this.chosen = body;
+    const { recording } = this, all = recording.hitsByBody;
+    by("body").value = body >= 0 ? body : "";
+    by("only").disabled = body < 0;
+    if (body < 0) by("only").checked = false;
+    this.list.load(recording, by("only").checked ? all[body] : Array.from({ length: recording.hits }, (_, hit) => hit));
+    this._stale();
+  }
+
+  _listen() {
+    const { clock } = this;
+    by("play").addEventListener("click", () => this._toggle());
+    by("back").addEventListener("click", () => this._step(-1));
+    by("on").addEventListener("click", () => this._step(1));
+    by("before").addEventListener("click", () => this._jump(-1));
+    by("after").addEventListener("click", () => this._jump(1));
+    by("time").addEventListener("input", () => {
+      clock.playing = false;
+      clock.seek(Number(by("time").value));
+    });
+    by("time").addEventListener("keydown", (event) => {
+      const frames = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[event.key];
+      if (!frames) return;
+      event.preventDefault();
+      this._step(frames);
+    });
+    by("speed").addEventListener("change", () => (clock.speed = Number(by("speed").value)));
+    by("view").addEventListener("click", () => {
+      this.camera.reset();
+      this._stale();
+    });
+    for (const id of ["halos", "ahead"]) by(id).addEventListener("change", () => this._stale());
+    by("only").addEventListener("change", () => this.choose(this.chosen));
+    by("body").addEventListener("change", () => {
+      const value = by("body").value === "" ? -1 : Number(by("body").value);
+      this.choose(Number.isInteger(value) && value < this.recording.count ? Math.max(-1, value) : this.chosen);
+    });
+    document.addEventListener("keydown", (event) => this._key(event));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this._colours());
+    new ResizeObserver(() => this._stale()).observe(this.canvas);
+    const draw = (now) => {
+      clock.tick(now);
+      if (this._dirty && this.recording) this._draw();
+      requestAnimationFrame(draw);
+    };
+    requestAnimationFrame(draw);
+  }
+
+  _key(event) {
+    const busy = event.target.closest("button, input, select, summary, a, textarea");
+    if (!this.recording || event.ctrlKey || event.metaKey || event.altKey || (busy && event.target.type !== "range")) return;
+    const act = {
+      " ": () => this._toggle(), k: () => this._toggle(), ",": () => this._step(-1), ".": () => this._step(1),
+      "[": () => this._jump(-1), "]": () => this._jump(1),
+    }[event.key];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  }
+
+  _toggle() {
+    this.clock.play(!this.clock.playing);
+  }
+
+  _step(frames) {
+    this.clock.stepBy(frames);
+    this._say();
+  }
+
+  _jump(direction) {
+    const time = this.recording.hitTimeFrom(this.clock.time, direction);
+    if (time === null) this._say(direction > 0 ? "No hit comes after this." : "No hit came before this.");
+    else this.goTo(time);
+  }
+
+  _pick(x, y) {
+    const { recording, stage } = this;
+    this.choose(bodyUnder(this._view(), x, y, stage.positions, recording.sizes));
+    this._say();
+  }
+
+  _view() {
+    return this.camera.view(this.recording.halfBox, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
+  }
+
+  _stale() {
+    this._dirty = true;
+  }
+
+  _colours() {
+    const style = getComputedStyle(document.documentElement);
+    this.colours = Object.fromEntries(NAMES.map((name) => {
+      const hex = style.getPropertyValue(`--${name}`).trim();
+      return [name, [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255)];
+    }));
+    this._stale();
+  }
+
+  /** How long a hit is seen, in s of the recording: while it plays long enough for an eye, else for its frame alone. */
+  get _glow() {
+    return this.clock.playing ? Math.max(GLOW * this.clock.speed, this.recording.step) : this._moment;
+  }
+
+  /** How far back a hit still happens now: where one happens at this very time, not at all. */
+  get _moment() {
+    const { clock, recording } = this, before = recording.hitsUntil(clock.time) - 1;
+    const exact = before >= 0 && clock.time - recording.hit_times[before] < 1e-9;
+    return exact || (recording.dt && !clock.playing) ? 1e-9 : recording.step;
+  }
+
+  _draw() {
+    this._dirty = false;
+    const { clock, recording, stage } = this;
+    if (stage) {
+      stage.fit();
+      recording.posesAt(clock.time, stage.positions, stage.quaternions);
+      const lines = this._mark(stage);
+      stage.draw(this._view(), this.colours, { halos: by("halos").checked, ...this._foresee(lines) });
+    }
+    this.timeline.draw(clock.time, this.colours);
+    this.list.follow(clock.time, 1e-9);
+    this._report();
+  }
+
+  /** Mark the bodies of the latest hits, and give the lines between those that met. */
+  _mark(stage) {
+    const { clock, recording } = this, lines = [];
+    stage.marks.fill(0);
+    for (let hit = recording.hitsUntil(clock.time) - 1; hit >= 0; hit--) {
+      const age = (clock.time - recording.hit_times[hit]) / this._glow;
+      if (age >= 1) break;
+      const first = recording.hit_first[hit], second = recording.hit_second[hit], bright = (1 - age) ** 0.7;
+      const place = second >= 0 ? 0 : 1;
+      for (const body of second >= 0 ? [first, second] : [first])
+        stage.marks[3 * body + place] = Math.max(stage.marks[3 * body + place], bright);
+      if (second >= 0) {
+        const ends = [first, second].flatMap((body) => [...stage.positions.subarray(3 * body, 3 * body + 3)]);
+        lines.push([...ends, ...this.colours.met, 0.9 * bright]);
+      }
+    }
+    if (this.chosen >= 0) stage.marks[3 * this.chosen + 2] = 1;
+    return lines;
+  }
+
+  /** The paths to the next hit: of the chosen body, or of whoever comes first. */
+  _foresee(lines) {
+    const { chosen, clock, recording, stage } = this, ghosts = [];
+    if (chosen >= 0) ghosts.push([...stage.positions.subarray(3 * chosen, 3 * chosen + 3), 1.12 * recording.sizes[chosen]]);
+    if (!by("ahead").checked) return { lines, ghosts };
+    const hit = this._nextHit();
+    if (hit < 0) return { lines, ghosts };
+    const end = recording.hit_times[hit], second = recording.hit_second[hit];
+    for (const body of second >= 0 ? [recording.hit_first[hit], second] : [recording.hit_first[hit]]) {
+      const places = [recording.positionAt(body, clock.time)];
+      let leg = recording.legAt(body, clock.time) + 1;
+      for (let drawn = 0; drawn < AHEAD && leg < recording.leg_starts[body + 1] && recording.leg_times[leg] < end; drawn++, leg++)
+        places.push([...recording.leg_positions.subarray(3 * leg, 3 * leg + 3)]);
+      places.push(recording.positionAt(body, end));
+      for (let place = 1; place < places.length; place++)
+        lines.push([...places[place - 1], ...places[place], ...this.colours.chosen, 0.95]);
+      ghosts.push([...places[places.length - 1], recording.sizes[body]]);
+    }
+    return { lines, ghosts };
+  }
+
+  _nextHit() {
+    const { clock, recording, chosen } = this;
+    if (chosen >= 0) return recording.hitsOfUntil(chosen, clock.time).next;
+    const next = recording.hitsUntil(clock.time);
+    return next < recording.hits ? next : -1;
+  }
+
+  /** The hits of this very frame. */
+  _hitsNow() {
+    const { clock, recording } = this, since = this._moment, now = [];
+    for (let hit = recording.hitsUntil(clock.time) - 1; hit >= 0; hit--) {
+      if (clock.time - recording.hit_times[hit] > since) break;
+      now.unshift(hit);
+    }
+    return now;
+  }
+
+  _report() {
+    const { clock, recording, chosen } = this;
+    by("play").textContent = clock.playing ? "❚❚ Pause" : "▶ Play";
+    by("time").value = clock.time;
+    const frame = recording.dt ? `frame ${recording.frameAt(clock.time)} / ${recording.frameAt(recording.duration)} · ` : "";
+    by("time").setAttribute("aria-valuetext", `${clock.time.toFixed(3)} of ${recording.duration} seconds`);
+    const now = this._hitsNow(), count = recording.hitsUntil(clock.time);
+    const names = now.slice(0, 6).map((hit) => recording.nameOf(hit)).join(", ") + (now.length > 6 ? ", …" : "");
+    by("now").textContent = `${frame}t = ${clock.time.toFixed(3)} s · ${count} of ${recording.hits} hits` + (names ? ` · now ${names}` : "");
+    by("facts-of-body").hidden = chosen < 0;
+    by("none").hidden = chosen >= 0;
+    if (chosen >= 0) {
+      const { count: hits, next } = recording.hitsOfUntil(chosen, clock.time);
+      by("body-speed").textContent = `${recording.speedAt(chosen, clock.time).toPrecision(4)} m/s`;
+      by("body-size").textContent = `${Number(recording.sizes[chosen].toPrecision(4))} m`;
+      by("body-hits").textContent = `${hits} of ${recording.hitsByBody[chosen].length}`;
+      by("body-next").textContent = next < 0 ? "none until the end"
+        : `${recording.nameOf(next)} in ${(recording.hit_times[next] - clock.time).toFixed(3)} s`;
+    }
+  }
+
+  /** Tell those who do not see the picture. */
+  _say(what = "") {
+    const { clock, recording, chosen } = this;
+    const now = this._hitsNow().map((hit) => recording.nameOf(hit)).join(", ");
+    const said = [what || (now ? `hits ${now}` : "no hit"), chosen >= 0 ? `body ${chosen} chosen` : ""].filter(Boolean);
+    by("said").textContent = `${clock.time.toFixed(3)} s: ${said.join("; ")}`;
+  }
+}

@@ -1,0 +1,207 @@
+"""Recorded runs: what a replay shows, as arrays, and how the results file keeps it.
+
+A body flies straight from the begin of one leg to that of its next, and turns about a fixed axis: so the legs, the
+first orientations and the spins say exactly where everything is at any time.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.arrays import Floats, Ints, Pairs
+from harness.store.history import reading
+
+WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
+
+
+class Surface(NamedTuple):
+    """A mesh whose bounding sphere has its centre at the origin and diameter 1.
+
+    Parameters
+    ----------
+    digest : by which two are the same
+    vertices, faces : (v, 3) float array and (f, 3) int32 array
+    """
+
+    name: str
+    digest: str
+    vertices: Floats
+    faces: NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One run to look at.
+
+    Parameters
+    ----------
+    shape : what the narrow phase saw: sphere, hull or mesh
+    duration : s
+    dt : s a frame; None where no frames were computed
+    half_box : (3,) m
+    sizes : (n,) m, diameters of bounding spheres
+    quaternions, spins : (n, 4) and (n, 3), rad/s; a body is turned by exp(spin t) quaternion
+    surface : what all bodies look like, but for their size; None for spheres
+    leg_times, leg_bodies : (m,) s and body numbers, in the order of time; the first n are the bodies at time 0
+    leg_positions, leg_velocities : (m, 3) m and m/s
+    hit_times, hit_bodies, hit_walls : (k,) s, (k, 2) body numbers, the second -1 at a wall, and (k,) numbers of walls,
+        -1 between bodies
+    """
+
+    shape: str
+    duration: float
+    dt: float | None
+    half_box: Floats
+    sizes: Floats
+    quaternions: Floats
+    spins: Floats
+    surface: Surface | None
+    leg_times: Floats
+    leg_bodies: Ints
+    leg_positions: Floats
+    leg_velocities: Floats
+    hit_times: Floats
+    hit_bodies: Pairs
+    hit_walls: Ints
+
+    def __len__(self) -> int:
+        return len(self.sizes)
+
+
+def write(connection: sqlite3.Connection, run: int, recording: Recording) -> None:
+    """Keep the recording of a run, inside a transaction of the caller's."""
+    facts = {
+        "shape": recording.shape,
+        "duration": recording.duration,
+        "dt": recording.dt,
+        "half_box": recording.half_box.tolist(),
+    }
+    surface = recording.surface
+    if surface is not None:
+        connection.execute(
+            "INSERT INTO mesh (digest, name, vertices, faces) VALUES (?, ?, ?, ?) ON CONFLICT (digest) DO NOTHING",
+            (
+                surface.digest,
+                surface.name,
+                surface.vertices.astype("<f8").tobytes(),
+                surface.faces.astype("<i4").tobytes(),
+            ),
+        )
+    bodies = np.column_stack([recording.sizes, recording.quaternions, recording.spins])
+    connection.execute(
+        "INSERT INTO recording (run, facts, bodies, mesh) VALUES (?, ?, ?, ?)",
+        (run, json.dumps(facts), bodies.astype("<f8").tobytes(), surface.digest if surface else None),
+    )
+    connection.executemany(
+        "INSERT INTO event (run, place, time, kind, first, second, wall) VALUES (?, ?, ?, ?, ?, ?, ?)",
+        ((run, place, *hit) for place, hit in enumerate(_hits(recording))),
+    )
+    legs = np.column_stack([recording.leg_bodies, recording.leg_positions, recording.leg_velocities]).astype("<f8")
+    moments = groupby(range(len(legs)), key=lambda leg: float(recording.leg_times[leg]))
+    connection.executemany(
+        "INSERT INTO frame (run, place, time, data) VALUES (?, ?, ?, ?)",
+        ((run, place, time, legs[list(rows)].tobytes()) for place, (time, rows) in enumerate(moments)),
+    )
+
+
+def _hits(recording: Recording) -> Iterator[tuple[float, str, int, int | None, str | None]]:
+    """Rows of the table `event`: time, kind, first, second, wall."""
+    columns = (recording.hit_times, recording.hit_bodies, recording.hit_walls)
+    for time, (i, j), wall in zip(*(column.tolist() for column in columns), strict=True):
+        yield (time, "pair", i, j, None) if wall < 0 else (time, "wall", i, None, WALLS[wall])
+
+
+def recorded(connection: sqlite3.Connection, keys: Iterable[str]) -> set[str]:
+    """Those of the points, by their keys, that have a recording."""
+    return {
+        key
+        for (key,) in connection.execute(
+            "SELECT key FROM recording JOIN run ON run.id = recording.run JOIN point ON point.id = run.point "
+            "WHERE key IN (SELECT value FROM json_each(?))",
+            (json.dumps(list(keys)),),
+        )
+    }
+
+
+class Recorded(NamedTuple):
+    """A recording, and the point it is of: its key, its parameters and the counters of its run."""
+
+    point: str
+    parameters: Mapping[str, Any]
+    counters: Mapping[str, float]
+    recording: Recording
+
+
+def recording_of(path: str | Path, experiment: str) -> Recorded | None:
+    """The newest recording of a point that an experiment lists now; None where nothing was recorded.
+
+    Raises
+    ------
+    InputError
+        The file is missing, empty, damaged, another program's, or of another schema version.
+    """
+    with reading(path) as connection:
+        row = connection.execute(
+            "SELECT recording.run, key, parameters, facts, bodies, mesh FROM recording "
+            "JOIN run ON run.id = recording.run JOIN point ON point.id = run.point "
+            "JOIN experiment_point ON experiment_point.point = point.id "
+            "JOIN experiment ON experiment.id = experiment_point.experiment "
+            "WHERE experiment.name = ? ORDER BY recording.run DESC LIMIT 1",
+            (experiment,),
+        ).fetchone()
+        if row is None:
+            return None
+        run, key, parameters, facts, bodies, digest = row
+        counters = dict(
+            connection.execute("SELECT name, value FROM metric WHERE run = ? AND unit = '1' ORDER BY rowid", (run,))
+        )
+        return Recorded(
+            key, json.loads(parameters), counters, _read(connection, run, json.loads(facts), bodies, digest)
+        )
+
+
+def _read(
+    connection: sqlite3.Connection, run: int, facts: Mapping[str, Any], bodies: bytes, digest: str | None
+) -> Recording:
+    hits = connection.execute(
+        "SELECT time, first, coalesce(second, -1), wall FROM event WHERE run = ? ORDER BY place", (run,)
+    ).fetchall()
+    frames = connection.execute("SELECT time, data FROM frame WHERE run = ? ORDER BY place", (run,)).fetchall()
+    legs = [np.frombuffer(data, "<f8").reshape(-1, 7) for _, data in frames]
+    rows = np.concatenate([*legs, np.empty((0, 7))])
+    each = np.frombuffer(bodies, "<f8").reshape(-1, 8)
+    return Recording(
+        shape=facts["shape"],
+        duration=facts["duration"],
+        dt=facts["dt"],
+        half_box=np.array(facts["half_box"]),
+        sizes=each[:, 0],
+        quaternions=each[:, 1:5],
+        spins=each[:, 5:],
+        surface=None if digest is None else _surface(connection, digest),
+        leg_times=np.repeat([time for time, _ in frames], [len(leg) for leg in legs]).astype(np.float64),
+        leg_bodies=rows[:, 0].astype(np.int64),
+        leg_positions=rows[:, 1:4],
+        leg_velocities=rows[:, 4:],
+        hit_times=np.array([time for time, *_ in hits], np.float64),
+        hit_bodies=np.array([(i, j) for _, i, j, _ in hits], np.int64).reshape(-1, 2),
+        hit_walls=np.array([-1 if wall is None else WALLS.index(wall) for *_, wall in hits], np.int64),
+    )
+
+
+def _surface(connection: sqlite3.Connection, digest: str) -> Surface:
+    name, vertices, faces = connection.execute(
+        "SELECT name, vertices, faces FROM mesh WHERE digest = ?", (digest,)
+    ).fetchone()
+    return Surface(
+        name, digest, np.frombuffer(vertices, "<f8").reshape(-1, 3), np.frombuffer(faces, "<i4").reshape(-1, 3)
+    )

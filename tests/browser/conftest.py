@@ -1,0 +1,114 @@
+"""One browser for all tests here, and pages that it is sent to: Debian's Chromium, driven by Playwright."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from harness.experiment.load import load_text
+from harness.report.site import write_report
+from harness.runner.execute import execute
+from harness.runner.servers import mesh_of
+from harness.scene.mesh_child import open_all
+from harness.store.database import Database
+from harness.store.recording import Recording
+from tests.report.conftest import ALL, write
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+# a WebGL2 that needs no graphics card, and no traffic of the browser's own
+SWITCHES = (
+    *("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--no-first-run", "--disable-quic"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
+)
+DESKTOP, PHONE = {"width": 1280, "height": 860}, {"width": 390, "height": 844}
+CUBES = """
+title: Cubes
+scene: {mesh: cube.ply, shape: mesh, count: 8, box: [4, 4, 4], seed: 7}
+motion: {duration: 4, dt: 1/50}
+"""
+SPHERES = """
+title: Spheres
+scene: {shape: sphere, count: 12, box: [5, 4, 4], size: {uniform: [0.5, 1.5]}}
+motion: {duration: 3, response: elastic}
+engine: {algorithm: predictive}
+"""
+
+
+def record(text: str) -> Recording:
+    """The recording of an experiment's first point, flown in this process."""
+    experiment = load_text(text, Path("browser.yaml"))
+    point = experiment.points[0]
+    mesh = mesh_of(experiment, point, open_all(experiment.mesh_paths.values()))
+    recording = execute(point, mesh, recorded=True).recording
+    assert recording is not None
+    return recording
+
+
+@pytest.fixture(scope="session")
+def cubes() -> Recording:
+    return record(CUBES)
+
+
+@pytest.fixture(scope="session")
+def spheres() -> Recording:
+    return record(SPHERES)
+
+
+@pytest.fixture(scope="session")
+def report(cubes: Recording, spheres: Recording, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a report with every kind of page, two of them with a replay."""
+    folder = tmp_path_factory.mktemp("report")
+    write(folder / "results.db", ALL)
+    with Database.open(folder / "results.db") as database:
+        database.add_recording("homework/number-of-objects-0", cubes)
+        database.add_recording("single-0", spheres)
+    return write_report(folder / "results.db", folder / "pages").parent
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Chromium; the tests are skipped where there is none."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[dev]'")
+    path = next(filter(None, map(shutil.which, NAMES)), None)
+    if path is None:
+        pytest.skip("no Chromium on this machine: apt-get install chromium")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=list(SWITCHES), timeout=120_000)
+        yield browser
+        browser.close()
+
+
+@dataclass
+class Visit:
+    """A page, and what went wrong on it or was asked of the network."""
+
+    page: object
+    errors: list[str]
+    requests: list[str]
+
+
+@pytest.fixture
+def visit(browser):
+    """Opens addresses, each in a browser as good as new; `script` runs before the page's own."""
+    contexts = []
+
+    def open_page(address: str, script: str = "", **options: object) -> Visit:
+        context = browser.new_context(**({"viewport": DESKTOP, "reduced_motion": "reduce"} | options))
+        contexts.append(context)
+        if script:
+            context.add_init_script(script)
+        page = context.new_page()
+        page.set_default_timeout(30_000)
+        found = Visit(page, [], [])
+        page.on("console", lambda said: found.errors.append(said.text) if said.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: found.errors.append(str(error)))
+        page.on("request", lambda request: found.requests.append(request.url))
+        page.goto(address)
+        return found
+
+    yield open_page
+    for context in contexts:
+        context.close()

@@ -1,0 +1,71 @@
+"""What the viewer reads says what was recorded, within the stated error, and is the same each time."""
+
+import base64
+import io
+import json
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from harness.replay.document import document
+from harness.replay.page import replay_page
+from harness.replay.still import still
+from tests.store.test_recording import recording
+
+KINDS = {"f4": "<f4", "f8": "<f8", "i4": "<i4", "u4": "<u4", "u2": "<u2"}
+
+
+def arrays(found):
+    content = base64.b64decode(found["data"])
+    return {
+        name: np.frombuffer(content, KINDS[kind], length, offset)
+        for name, (kind, offset, length) in found["arrays"].items()
+    }
+
+
+def test_legs_are_sorted_by_body_and_rounded_to_32_bits():
+    recorded = recording()
+    found = arrays(document(recorded, "X"))
+    assert found["leg_starts"].tolist() == [0, 2, 4, 6]
+    for body in range(3):
+        mine = recorded.leg_bodies == body
+        legs = slice(*found["leg_starts"][body : body + 2])
+        assert (found["leg_times"][legs] == recorded.leg_times[mine]).all()
+        places = found["leg_positions"].reshape(-1, 3)[legs]
+        assert np.abs(places - recorded.leg_positions[mine]).max() <= 2.0**-24
+
+
+def test_hits_name_bodies_and_walls():
+    found = arrays(document(recording(), "X"))
+    assert found["hit_times"].tolist() == [0.7, 0.9]
+    assert found["hit_first"].tolist() == [0, 1]
+    assert found["hit_second"].tolist() == [2, -1 - 3]
+
+
+def test_a_large_mesh_has_wide_corner_numbers():
+    recorded = recording()
+    vertices = np.zeros((2**16, 3))
+    large = recorded.surface._replace(vertices=vertices)
+    object.__setattr__(recorded, "surface", large)
+    assert document(recorded, "X")["arrays"]["faces"][0] == "u4"
+
+
+def test_the_page_is_one_file_that_asks_for_nothing_and_the_same_each_time():
+    page = replay_page(recording(), "</script><script>alert(1)</script>", [("mesh", "<b>")])
+    assert page == replay_page(recording(), "</script><script>alert(1)</script>", [("mesh", "<b>")])
+    assert page.count("</script>") == 2
+    assert "<b>" not in page
+    assert not re.search(r"""https?://|@import|url\(|src="(?!data:)|^(import|export)\b""", page, re.MULTILINE)
+    carried = re.search(r'<script type="application/json" id="recording">(.*?)</script>', page, re.DOTALL).group(1)
+    assert json.loads(carried)["title"] == "</script><script>alert(1)</script>"
+
+
+@pytest.mark.parametrize("surface", [None, recording().surface])
+def test_the_still_shows_the_box_and_the_bodies_on_nothing(surface):
+    picture = Image.open(io.BytesIO(still(recording(surface)))).convert("RGBA")
+    opaque = np.asarray(picture)[..., 3] > 0
+    assert 0.005 < opaque.mean() < 0.6
+    assert not opaque[0].any()
+    assert not opaque[:, 0].any()

@@ -1,0 +1,73 @@
+"""A recording comes back from the results file as it was put in."""
+
+from dataclasses import fields
+
+import numpy as np
+
+from harness.store.database import Database
+from harness.store.recording import Recording, Surface, recording_of
+from harness.store.records import PointRow
+
+TRIANGLE = Surface(
+    "t.ply", "abc", np.array([[0.5, 0, 0], [-0.25, 0.4, 0], [-0.25, -0.4, 0.1]]), np.array([[0, 1, 2]], np.int32)
+)
+
+
+def recording(surface=TRIANGLE, bodies=3):
+    rng = np.random.default_rng(bodies)
+    turned = np.array([0.0, 2.0][: min(bodies, 2)], float)
+    return Recording(
+        shape="mesh" if surface else "sphere", duration=1.5, dt=0.1, half_box=np.array([1.0, 2.0, 1 / 3]),
+        sizes=rng.random(bodies), quaternions=rng.random((bodies, 4)), spins=rng.random((bodies, 3)), surface=surface,
+        leg_times=np.r_[np.zeros(bodies), np.full(len(turned), 0.7), 0.9],
+        leg_bodies=np.r_[np.arange(bodies), turned, 1].astype(int),
+        leg_positions=rng.random((bodies + len(turned) + 1, 3)),
+        leg_velocities=rng.random((bodies + len(turned) + 1, 3)),
+        hit_times=np.array([0.7, 0.9]), hit_bodies=np.array([[0, 2], [1, -1]]), hit_walls=np.array([-1, 3]),
+    )  # fmt: skip
+
+
+def kept(path, *recordings):
+    """Each recording with a point of its own, all of one experiment."""
+    with Database.open(path) as database:
+        sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"fingerprint": "m"}, {})
+        points = [PointRow(f"key-{place}", {"count": place}) for place in range(len(recordings))]
+        database.list_experiment(sweep, "x", "X", None, "", {}, points)
+        for point, found in zip(points, recordings, strict=True):
+            database.add_run(sweep, point.key, 0, "ok", None, None, {"pair_hits": (1.0, "1")}, True)
+            database.add_recording(point.key, found)
+        assert database.recorded(["key-0", "missing"]) == {"key-0"}
+
+
+def same(a, b):
+    for field in fields(Recording):
+        one, other = getattr(a, field.name), getattr(b, field.name)
+        if field.name == "surface":
+            assert (one is None) == (other is None)
+            assert one is None or (one.digest == other.digest and (one.vertices == other.vertices).all())
+            assert one is None or (one.faces == other.faces).all()
+        else:
+            assert np.array_equal(one, other), field.name
+
+
+def test_what_was_recorded_comes_back_to_the_bit(tmp_path):
+    kept(tmp_path / "r.db", recording())
+    found = recording_of(tmp_path / "r.db", "x")
+    same(found.recording, recording())
+    assert found.parameters == {"count": 0}
+    assert found.counters == {"pair_hits": 1.0}
+
+
+def test_the_newest_recording_is_shown_and_a_mesh_is_kept_once(tmp_path):
+    kept(tmp_path / "r.db", recording(bodies=5), recording())
+    same(recording_of(tmp_path / "r.db", "x").recording, recording())
+
+
+def test_spheres_need_no_mesh(tmp_path):
+    kept(tmp_path / "r.db", recording(surface=None))
+    same(recording_of(tmp_path / "r.db", "x").recording, recording(surface=None))
+
+
+def test_an_experiment_without_a_recording_has_none(tmp_path):
+    kept(tmp_path / "r.db", recording())
+    assert recording_of(tmp_path / "r.db", "y") is None
