@@ -155,9 +155,13 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
         (SWEEPS, compared is not None),
     )
     further = [file for file, there in present if there]
+    replays: dict[str, str] = {}  # file by the name of its experiment
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
-        yield from _experiment(environment, page, elsewhere, claims, further, replay_of(database, page.record))
+        replay = replay_of(database, page.record)
+        if replay is not None:
+            replays[page.record.name] = f"{page.folder}/{replay.file}"
+        yield from _experiment(environment, page, elsewhere, claims, further, replay)
     yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
     if accuracy:
         yield from _accuracy(environment, accuracy, claims, further, records)
@@ -165,7 +169,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
         yield BACKENDS, _backends(environment, backends, claims, further, records)
         yield from backends.files()
     if stability is not None:
-        yield STABILITY, _stability(environment, stability, pages, claims, further)
+        yield STABILITY, _stability(environment, stability, pages, replays, claims, further)
     if compared is not None:
         yield SWEEPS, _compared(environment, compared, claims, further, records)
     yield "findings.md", summary(pages)
@@ -307,7 +311,12 @@ def _by_source(claims: Sequence[tuple[Listed, VerdictRow]]) -> list[tuple[str, l
 
 
 def _stability(
-    environment: Environment, found: Matrix, pages: Sequence[ExperimentPage], claims: bool, further: Sequence[str]
+    environment: Environment,
+    found: Matrix,
+    pages: Sequence[ExperimentPage],
+    replays: Mapping[str, str],
+    claims: bool,
+    further: Sequence[str],
 ) -> str:
     cases = [page for page in pages if is_case(page)]
     return environment.get_template("stability.html.j2").render(
@@ -317,6 +326,7 @@ def _stability(
         signs=SIGNS,
         meanings=MEANINGS,
         cases=cases,
+        replays=replays,
         footer=_footer([page.record for page in cases]),
     )
 

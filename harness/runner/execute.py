@@ -59,7 +59,7 @@ def execute(
     mesh : the mesh its scene names
     memory : B that the scene may need
     traced : keep every hit
-    recorded : keep what a replay shows; the clocks of such a run see it
+    recorded : keep what a replay shows, and measure nothing else: the clocks of such a run see it
     asked : metrics that are made on demand alone, and are demanded
 
     Raises
@@ -79,12 +79,13 @@ def execute(
     clock.lap("setup_seconds")
     outcome, flights = (fly(), 1) if traced or recorded else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
+    if recorded:
+        return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome))
     metrics |= invariance(asked, scene, partial(_hits, point, plan=plan))
-    if point.reference is not None and not (traced or recorded):
+    if point.reference is not None and not traced:
         metrics |= accuracy.errors(point, mesh, outcome.trace or _hits(point, scene), _hits)
     _refuse_what_is_no_number(metrics)
-    recording = recording_of(point, scene, outcome) if recorded else None
-    return Result(metrics, plan, outcome.trace if traced or recorded else None, flights, recording)
+    return Result(metrics, plan, outcome.trace if traced else None, flights)
 
 
 def _flight(

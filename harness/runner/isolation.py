@@ -153,12 +153,7 @@ def _reported(task: Task, mesh: Mesh | None) -> bytes:
     try:
         try:
             result = execute(
-                task.point,
-                mesh,
-                memory=task.memory,
-                traced=task.traced,
-                recorded=task.recorded,
-                asked=task.asked,
+                task.point, mesh, memory=task.memory, traced=task.traced, recorded=task.recorded, asked=task.asked
             )
             report = Report(
                 "ok",
