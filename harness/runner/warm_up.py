@@ -49,7 +49,9 @@ def warm_up(point: Point) -> bool:
     """
     wanted = list(pieces(point.engine.algorithm, point.scene.shape, forced=bool(point.engine.stages)))
     if point.reference is not None:
-        wanted += [_REFERENCES[point.reference.shape], *pieces("predictive", point.reference.shape)]
+        wanted.append(_REFERENCES[point.reference.shape])
+        if point.motion.response != "none":  # the reference has to be flown
+            wanted += pieces("predictive", point.reference.shape)
     left = [fly for fly in dict.fromkeys(wanted) if fly not in _flown]
     for fly in left:
         fly()
