@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     import json
     import sys
 
-    from harness.cli.crosscheck import WHOLE, backends_of, cross_check, kept, key_of, reductions
+    from harness.cli.crosscheck import SAVED, SHOWN, WHOLE, backends_of, cross_check, kept, key_of, reductions
     from harness.compare.document import document
     from harness.compare.outcome import Comparison
     from harness.runner.preparation import prepare
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         whole.unsupported += lacking
         progress(f"{experiment.name}: {', '.join(names)}")
         for pair, found in cross_check(experiment, meshes, names, WHOLE, progress):
-            small = reductions(found, meshes, WHOLE)
+            small = reductions(found, meshes, SAVED if arguments.save else SHOWN)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
             keep.append(
                 (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE), kept(experiment, found, small))

@@ -46,13 +46,11 @@ class Extent:
     verdicts : of a scene as it flies, about; None for every frame
     every : ask about every so manieth pose at first contact
     flown : frames of a flight with hits, at the most; None for all
-    cases : wrong verdicts of one backend to make smaller
     """
 
     verdicts: int | None
     every: int
     flown: int | None
-    cases: int
 
     def frames(self, point: Point, bodies: int) -> int | None:
         """The last frame of a scene to ask about; None to leave it out."""
@@ -62,8 +60,12 @@ class Extent:
         return min(point.motion.frames, most) if most > 0 else None
 
 
-WHOLE = Extent(verdicts=None, every=1, flown=None, cases=5)
-SWEPT = Extent(verdicts=60_000, every=23, flown=600, cases=2)
+WHOLE = Extent(verdicts=None, every=1, flown=None)
+SWEPT = Extent(verdicts=60_000, every=23, flown=600)
+
+# Cases of one backend that are made smaller, to be shown or to be saved: it takes a second or two each, and more of
+# them show the same defect again.
+SHOWN, SAVED = 2, 5
 
 
 def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[tuple[str, ...], list[str]]:
@@ -108,10 +110,10 @@ def cross_check(
         yield pair, found
 
 
-def reductions(found: Comparison, meshes: Meshes, extent: Extent) -> list[Reduced]:
-    """The cases of a comparison, the first ones made smaller."""
+def reductions(found: Comparison, meshes: Meshes, most: int) -> list[Reduced]:
+    """The cases of a comparison, the first `most` of every backend made smaller."""
     names = {id(mesh): path.name for path, mesh in meshes.items()}
-    return reduced(found, names, extent.cases)
+    return reduced(found, names, most)
 
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:

@@ -141,7 +141,7 @@ def _compare(
     wanted = [experiment for experiment in experiments if experiment.measure.compare]
     if not wanted:
         return []
-    from harness.cli.crosscheck import SWEPT, backends_of, cross_check, kept, key_of, reductions
+    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, kept, key_of, reductions
 
     done = set() if arguments.fresh else database.history.compared()
     lines = []
@@ -155,7 +155,7 @@ def _compare(
             if not arguments.quiet:
                 print(f"{experiment.name}: comparing {' and '.join(pair)}", file=sys.stderr)
             for _, found in cross_check(experiment, meshes, pair, SWEPT):
-                rows = reductions(found, meshes, SWEPT)
+                rows = reductions(found, meshes, SHOWN)
                 database.add_comparison(command, experiment.name, pair, key, kept(experiment, found, rows))
                 real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
                 lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")

@@ -112,6 +112,20 @@ def test_an_experiment_with_nothing_but_a_missing_extra_is_an_error_that_says_so
     assert "pip install 'odd-engine[fast]'" in said.out + said.err
 
 
+def test_of_several_backends_those_not_installed_are_passed_over_with_the_hint(lacking, tmp_path, capsys):
+    path = tmp_path / "two.yaml"
+    path.write_text(
+        "title: Two\nscene: {shape: sphere, count: 2, box: [9, 9, 9]}\n"
+        "zip: [{backend: [fcl, odd], algorithm: [grid, native]}]\nmeasure: {repeats: 3}\n"
+    )
+    assert main(["sweep", str(path), "--dry-run"]) == 0
+    said = capsys.readouterr().out
+    assert "points passed over: backend \"odd\" cannot be used: not installed; pip install 'odd-engine[fast]'" in said
+    assert "3 runs to do" in said
+    assert main(["compare", str(path), "--backends", "fcl,odd"]) == 2
+    assert "pip install 'odd-engine[fast]'" in capsys.readouterr().err
+
+
 def test_trimesh_has_no_spheres_and_says_what_to_exclude(tmp_path, capsys):
     path = tmp_path / "one.yaml"
     path.write_text(
