@@ -37,9 +37,11 @@ def positions_at(course, time, count):
 
 
 @pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
-@pytest.mark.parametrize("algorithm", ["brute-force", "predictive"])
-def test_legs_join_and_end_where_the_run_ends(algorithm, response):
-    scene = random_scene("sphere", 12, 5.0, seed=3)
+@pytest.mark.parametrize(
+    ("algorithm", "shape"), [("brute-force", "sphere"), ("predictive", "sphere"), ("predictive", "hull")]
+)
+def test_legs_join_and_end_where_the_run_ends(algorithm, shape, response):
+    scene = random_scene(shape, 12, 5.0, seed=3)
     outcome = fly(scene, algorithm, response)
     course = outcome.course
     assert len(course.times) > 2 * len(scene.bodies)
