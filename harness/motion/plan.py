@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.errors import InputError
+from harness.motion.predictive.solids import needs_its_surface
 from harness.motion.response import Response
 from harness.scene.scene import Scene
 
@@ -133,6 +134,8 @@ def _scheduled_solids(scene: Scene, response: Response) -> list[Stage]:
 def _mesh_search(scene: Scene) -> Stage:
     if scene.shape == "hull":
         return Stage("mesh_search", False, "the shape is the hull")
+    if not needs_its_surface(scene):
+        return Stage("mesh_search", False, "the mesh is convex, its own hull, and no body can be inside an equal one")
     return Stage("mesh_search", True, "surfaces are advanced to their contact when their hulls meet, not before")
 
 
