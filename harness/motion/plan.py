@@ -13,6 +13,7 @@ from math import inf
 
 from harness.backends.detection import NAMES, decide_detection, equal_sizes
 from harness.backends.stages import Decisions, Stage
+from harness.motion.predictive.solids import needs_its_surface
 from harness.motion.reach import nobody_meets, nobody_moves, walls_are_out_of_reach
 from harness.motion.response import Response
 from harness.scene.scene import Scene
@@ -218,6 +219,9 @@ def _scheduled(asked: Asked, decisions: Decisions) -> None:
         surfaces = "surfaces are advanced to their contact when their hulls meet, not before"
         if scene.shape == "hull":
             take("mesh_search", False, "the shape is the hull")
+        elif count > 1 and not needs_its_surface(scene):
+            why = "the mesh is convex, its own hull, and no body can be inside an equal one"
+            take("mesh_search", False, why)
         else:
             take("mesh_search", count > 1, surfaces if count > 1 else alone)
     take("walls", True, "the next wall of each body, from its velocity")

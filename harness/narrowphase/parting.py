@@ -105,7 +105,7 @@ def time_of_mesh_parting(
         pose = relative_pose(orientation(a, time), a.size, orientation(b, time), b.size, offset)
         depth, leaves = depth_of_crossing(shape, pose, depth, least, leaves, stack)
         if depth < least:
-            near = time_of_mesh_impact(shape, shape, a, b, time, time, least, start)
+            near = time_of_mesh_impact(shape, shape, a, b, time, time + least / speed, least, start)
             if near.verdict == NEVER:
                 return MeshImpact(IMPACT, time, least, nowhere, Start(start.seeds, leaves), step)
             depth = least

@@ -1,12 +1,22 @@
 """Spinning hulls and meshes from event to event, against closed forms, a plain loop, spheres and frames."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
+import trimesh
 from scipy.optimize import brentq
 
+from harness.backends.fcl import Fcl
+from harness.motion.plan import make_plan
+from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form
+from harness.motion.stepped import fly_stepped
+from harness.scene.bodies import Bodies
 from harness.scene.box import Box
+from harness.scene.hull import convex_hull
+from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies
 from tests.motion.solid_reference import SolidReference
@@ -82,14 +92,20 @@ def test_a_spinning_cube_meets_a_cube_and_a_wall_when_its_edge_has_turned_there(
 
 
 @pytest.mark.parametrize(
-    ("name", "response", "restitution", "ratio"),
-    [("cube", "reflect", 1.0, 1.0), ("cube", "elastic", 0.8, 3.0), (PUMPKIN, "elastic", 1.0, 1.5)],
+    ("name", "shape", "response", "restitution", "ratio", "seeds"),
+    [
+        ("cube", "hull", "reflect", 1.0, 1.0, 4),
+        ("cube", "hull", "elastic", 0.8, 7.0, 4),
+        (PUMPKIN, "hull", "elastic", 1.0, 1.5, 1),
+        (PUMPKIN, "mesh", "elastic", 1.0, 1.5, 2),
+        ("package:pybullet_data/duck.obj", "mesh", "reflect", 1.0, 1.0, 2),
+    ],
 )
-def test_the_scheduler_meets_the_events_of_the_plain_loop(name, response, restitution, ratio):
+def test_the_scheduler_meets_the_events_of_the_plain_loop(name, shape, response, restitution, ratio, seeds):
     mesh = cube_mesh() if name == "cube" else mesh_named(name)
     compared = 0
-    for seed in range(4):
-        scene = crowd(mesh, 5, 1.1, seed, ratio=ratio)
+    for seed in range(seeds):
+        scene = crowd(mesh, 5, 1.1, seed, shape, ratio=ratio)
         reference = SolidReference(scene, response, restitution)
         while len(reference.events) < 12 and reference.happen():
             pass
@@ -101,4 +117,174 @@ def test_the_scheduler_meets_the_events_of_the_plain_loop(name, response, restit
         assert errors[0] < 1e-9
         assert errors.max() < 1e-5
         compared += len(expected)
-    assert compared >= 40
+    assert compared >= 5 * seeds
+
+
+def test_fine_icospheres_fly_as_spheres_do():
+    """Inscribed, so that they meet later, by the square of the length of their edges."""
+    latest = []
+    for level in (2, 3, 4):
+        sphere = trimesh.creation.icosphere(subdivisions=level, radius=0.5)
+        hull = convex_hull(np.array(sphere.vertices))
+        mesh = Mesh("icosphere", hull.vertices, hull.faces, hull, "", watertight=True, convex=True)
+        scene = crowd(mesh, 20, 2.2, 5)
+        bodies = scene.bodies
+        exact = Simulation(
+            bodies.positions,
+            bodies.velocities,
+            bodies.radii,
+            bodies.masses,
+            scene.box.half,
+            "elastic",
+            record=True,
+        )
+        exact.advance(np.inf, max_events=8)
+        found = fly(scene, np.inf, tolerance=1e-10, max_events=8).events
+        assert sequence(found) == sequence(exact.events)
+        late = found["time"] - exact.events["time"]
+        assert late[0] >= -1e-9
+        latest.append(np.abs(late).max() / sphere.edges_unique_length.mean() ** 2)
+    assert max(latest) < 0.5
+    assert max(latest) / min(latest) < 4
+
+
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+def test_the_lateness_of_frames_is_of_first_order_in_their_length(shape):
+    scene = crowd(mesh_named(PUMPKIN), 6, 1.2, 2, shape)
+    first = 10
+    exact = fly(scene, np.inf, tolerance=1e-10, max_events=first).events
+    lateness = []
+    for dt in (2e-3, 5e-4, 1.25e-4):
+        plan = make_plan(scene, backend="fcl", algorithm="grid", response="elastic")
+        backend = Fcl("grid")
+        backend.load(scene)
+        frames = round((exact["time"][-1] + 0.02) / dt)
+        trace = fly_stepped(scene, plan, backend, frames=frames, dt=dt, response="elastic", traced=True).trace
+        order = [(*bodies, wall) for bodies, wall in zip(trace.bodies.tolist(), trace.walls.tolist(), strict=True)]
+        assert order[:first] == [(e["i"], e["j"], e["wall"]) for e in exact]
+        lateness.append(np.mean(np.abs(trace.times[:first] - exact["time"])))
+    orders = np.log(np.divide(lateness[:-1], lateness[1:])) / np.log(4)
+    assert ((orders > 0.5) & (orders < 1.5)).all()
+
+
+@pytest.mark.parametrize(("name", "shape"), [("cube", "hull"), (PUMPKIN, "mesh")])
+def test_without_a_response_every_onset_is_found_and_no_other(name, shape):
+    mesh, dt, until = cube_mesh() if name == "cube" else mesh_named(name), 1e-3, 2.5
+    scene = crowd(mesh, 8, 1.4, 3, shape)
+    simulation = fly(scene, until, "none", tolerance=1e-8)
+    exact = simulation.events
+    plan = make_plan(scene, backend="fcl", algorithm="grid", response="none")
+    backend = Fcl("grid")
+    backend.load(scene)
+    trace = fly_stepped(scene, plan, backend, frames=round(until / dt), dt=dt, response="none", traced=True).trace
+    pairs = exact[exact["kind"] == 0]
+    seen = sorted((*trace.bodies[k], trace.times[k]) for k in np.flatnonzero(trace.walls < 0))
+    onsets = sorted(zip(pairs["i"], pairs["j"], pairs["time"], strict=True))
+    assert [event[:2] for event in seen] == [event[:2] for event in onsets]
+    late = np.array([event[2] for event in seen]) - [event[2] for event in onsets]
+    assert -1e-9 < late.min() <= late.max() < dt * (1 + 1e-9)
+    assert len(onsets) > 20
+    assert np.allclose(simulation.positions, trace.positions, atol=1e-12)
+
+
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+@pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
+def test_a_run_is_the_same_to_the_bit_however_it_is_sampled(shape, response):
+    scene = crowd(mesh_named(PUMPKIN), 20, 2.0, 7, shape, ratio=4.0)
+    whole = fly(scene, 1.5, response, tolerance=1e-6)
+    pieces = SolidSimulation(scene.bodies, scene.box, Form(scene), response, record=True)
+    for time in np.linspace(0, 1.5, 100):
+        pieces.advance(time)
+        pieces.positions_at(time)
+    assert np.array_equal(whole.events, pieces.events)
+    assert np.array_equal(whole.positions, pieces.positions)
+    assert whole.counters == pieces.counters
+
+
+def test_bodies_in_another_order_meet_as_before():
+    scene = crowd(mesh_named(PUMPKIN), 12, 1.7, 11, "mesh", ratio=5.0)
+    bodies, order = scene.bodies, np.random.default_rng(0).permutation(12)
+    shuffled = Bodies(*(getattr(bodies, field.name)[order] for field in fields(bodies)))
+    one = fly(scene, np.inf, tolerance=1e-10, max_events=15).events
+    other = fly(Scene("mesh", scene.mesh, shuffled, scene.box), np.inf, tolerance=1e-10, max_events=15).events
+    assert np.allclose(one["time"], other["time"], atol=1e-6)
+    for a, b in zip(one, other, strict=True):
+        assert a["wall"] == b["wall"]
+        assert {a["i"], a["j"]} == {order[b["i"]], order[b["j"]] if b["j"] >= 0 else -1}
+
+
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+@pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
+def test_ten_bodies_that_cannot_fit_into_their_box_come_to_an_end(shape, response):
+    rng = np.random.default_rng(259)
+    bodies = make_bodies(
+        rng.uniform(-0.5, 0.5, (10, 3)),
+        rng.normal(size=(10, 3)),
+        spins=rng.normal(size=(10, 3)),
+        quaternions=turns(rng, 10),
+        sizes=[1] * 8 + [0.3, 0.1],
+    )
+    bodies.positions[1] = bodies.positions[0]
+    scene = Scene(shape, mesh_named(PUMPKIN), bodies, Box(np.full(3, 1.0)))
+    simulation = fly(scene, 1.0, response, tolerance=1e-6)
+    assert simulation.time == 1.0
+    assert np.isfinite(simulation.positions).all()
+    assert (np.diff(simulation.events["time"]) >= 0).all()
+    if response != "none":
+        assert simulation.kinetic_energy == pytest.approx(0.5 * (bodies.masses @ (bodies.velocities**2).sum(axis=1)))
+
+
+def test_energy_is_kept_over_thousands_of_hits_and_nobody_escapes():
+    scene = crowd(cube_mesh(), 60, 2.6, 1)
+    simulation = fly(scene, np.inf, tolerance=1e-6, max_events=20_000)
+    before = 0.5 * scene.bodies.masses @ (scene.bodies.velocities**2).sum(axis=1)
+    assert simulation.counters["pair_hits"] > 5000
+    assert simulation.counters["stalled_events"] == 0
+    assert abs(simulation.kinetic_energy / before - 1.0) < 1e-12
+    assert (np.abs(simulation.positions) <= 2.6).all()
+    assert abs(simulation.virial_residual) < 1e-10
+
+
+def test_a_rib_that_strikes_while_the_centres_separate_goes_through_in_silence():
+    bar = convex_hull(cube_mesh().hull.vertices * [1, 0.1, 0.1] / np.linalg.norm([1, 0.1, 0.1]) * np.sqrt(3))
+    mesh = Mesh("bar", bar.vertices, bar.faces, bar, "", watertight=True, convex=True)
+    bodies = make_bodies([(0, 0, 0), (0.3, 0, 0)], [(0, 0, 0), (0.01, 0, 0)], spins=[(0, 0, 0), (0, 0, 3)])
+    bodies.quaternions[:] = (np.sqrt(0.5), 0, 0, np.sqrt(0.5))
+    scene = Scene("hull", mesh, bodies, Box(np.full(3, 5.0)))
+    assert len(fly(scene, 3.0).events) == 0
+    assert len(fly(scene, 3.0, "none").events) >= 1
+    # with the centres approaching, the same stroke counts
+    bodies.velocities[1, 0] = -0.01
+    assert len(fly(scene, 3.0).events) >= 1
+
+
+def test_orientations_keep_their_digits_in_long_runs():
+    scene = crowd(cube_mesh(), 3, 1.2, 4, spin=40.0)
+    bodies = scene.bodies
+    bodies.velocities *= 1e-4
+    simulation = fly(scene, np.inf, max_events=3000)
+    body, clock = simulation._solid.body, simulation._world.tally.clock
+    base = np.longdouble(clock[0]) + np.longdouble(clock[1])
+    assert base > 1e5
+    spins = bodies.spins.astype(np.longdouble)
+    rates = np.sqrt((spins**2).sum(axis=1))
+    half = rates * base / 2
+    s, c = np.sin(half) / rates, np.cos(half)
+    vectors, (w0, *v0) = spins * s[:, None], bodies.quaternions.astype(np.longdouble).T
+    v0 = np.array(v0).T
+    w = c * w0 - (vectors * v0).sum(axis=1)
+    v = c[:, None] * v0 + vectors * w0[:, None] + np.cross(vectors, v0)
+    if np.finfo(np.longdouble).eps < 1e-18:
+        assert np.abs(body.turns - np.column_stack([w, v])).max() < 1e-12
+
+
+def test_the_plan_says_what_is_searched():
+    pumpkin = crowd(mesh_named(PUMPKIN), 3, 2.0, 0, "mesh")
+    cubes_ = crowd(cube_mesh(), 3, 2.0, 0, "mesh")
+    for scene, mesh_search in ((pumpkin, True), (cubes_, False)):
+        plan = make_plan(scene, backend="fcl", algorithm="predictive", response="elastic")
+        assert plan.keeps("mesh_search") == mesh_search == Form(scene).concave
+        assert plan.keeps("hull_search")
+        assert plan.keeps("wall_search")
+    still = make_plan(pumpkin, backend="fcl", algorithm="predictive", response="none")
+    assert not still.keeps("wall_search")

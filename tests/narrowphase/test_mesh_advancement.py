@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from harness.narrowphase.advancement import IMPACT, NEVER, attitude, time_of_impact
+from harness.narrowphase.advancement import IMPACT, NEVER, attitude, place, time_of_impact
 from harness.narrowphase.gjk import NO_SEEDS
 from harness.narrowphase.mesh_advancement import NO_START, MeshShape, time_of_mesh_impact
 from harness.narrowphase.support import support_map

@@ -60,7 +60,8 @@ def search_pair(world: World, body: Solids, windows: Windows, k: int, w: int, no
         remove(windows, k, w)
         return
     windows.times[w] = now + time
-    if verdict == STALLED:
+    # What has just parted cannot touch but by rounding
+    if verdict == STALLED or (phase == PARTING and time == 0.0):
         if time < world.rules.pause:
             windows.times[w] = now + world.rules.pause
             counts[STALLED_EVENTS] += 1

@@ -14,6 +14,8 @@ from harness.scene.box import Box
 
 # Windows that a body has room for at first.
 WINDOWS = 6
+# Hits in no time that make a body stall: fewer than of spheres, as each costs the searches of all that overlap.
+BURST = {"none": 30, "reflect": 1000, "elastic": 10_000}
 
 
 class SolidSimulation(Simulation):
@@ -52,7 +54,7 @@ class SolidSimulation(Simulation):
             search="cells",
         )
         # The narrow search takes the time, not the memory: no need to keep neighbours together
-        self._world = self._world._replace(rules=self._world.rules._replace(tidying=0))
+        self._world = self._world._replace(rules=self._world.rules._replace(tidying=0, burst=BURST[response]))
         order = self._world.spheres.marks[:, LABEL]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64
