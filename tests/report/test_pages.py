@@ -58,7 +58,7 @@ class Outline(HTMLParser):
 
 
 def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
-    links = re.findall(r'<h4><a href="([^"]+)"', pages["index.html"])
+    links = re.findall(r'<h[34]><a href="([^"]+)"', pages["index.html"])
     assert len(links) == len(experiments(database))
     assert set(links) <= pages.keys()
 
