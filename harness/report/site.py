@@ -172,7 +172,8 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
         yield STABILITY, _stability(environment, stability, pages, replays, claims, further)
     if compared is not None:
         yield SWEEPS, _compared(environment, compared, claims, further, records)
-    yield "findings.md", summary(pages)
+    decisions = [said for section in accuracy for said in section.decisions]
+    yield "findings.md", summary(pages, decisions, stability.sentences if stability else ())
     yield "runs.csv", csv(table)
 
 

@@ -8,12 +8,14 @@ from collections.abc import Sequence
 from markupsafe import escape
 
 from harness.report.pages import ExperimentPage, machine_text
+from harness.report.stability import is_case
 
 
-def summary(pages: Sequence[ExperimentPage]) -> str:
+def summary(pages: Sequence[ExperimentPage], decisions: Sequence[str], stability: Sequence[str]) -> str:
     """A table with a row an experiment: its title, what was found, and what became of its claims.
 
-    Machine, versions and command of the newest sweep stand above it.
+    Machine, versions and command of the newest sweep stand above it; below it what to use at which accuracy, and how
+    far each method survives stiff and extreme scenes, whose experiments have no rows of their own.
     """
     if not pages:
         return "There are no results yet.\n"
@@ -22,9 +24,14 @@ def summary(pages: Sequence[ExperimentPage]) -> str:
         f"Measured by `{newest.command}` (harness {newest.version}, {newest.started[:10]}) "
         f"on {machine_text(newest.machine)}."
     )
+    listed = [page for page in pages if not is_case(page)]
     rows = ["| experiment | what was found | claims |", "|---|---|---|"]
-    rows += [f"| {_cell(page.record.title)} | {_cell(page.findings.answer)} | {_claims(page)} |" for page in pages]
-    return "\n".join([head, "", *rows]) + "\n"
+    rows += [f"| {_cell(page.record.title)} | {_cell(page.findings.answer)} | {_claims(page)} |" for page in listed]
+    lines = [head, "", *(rows if listed else [])]
+    for title, sentences in (("What to use", decisions), ("Stiff and extreme scenes", stability)):
+        if sentences:
+            lines += ["", f"**{title}**", "", *(f"- {_cell(sentence)}" for sentence in sentences)]
+    return "\n".join(lines) + "\n"
 
 
 def _claims(page: ExperimentPage) -> str:
