@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -15,6 +17,26 @@ from harness.scene.scene import Scene
 # the first call of a kernel compiles it, so a time limit an example would fail at random
 settings.register_profile("harness", deadline=None)
 settings.load_profile("harness")
+
+# With several workers (`-n 2`) the files that take longest come first, so that no worker is left alone with one.
+LONGEST = ("runner", "compare", "narrowphase", "cli", "motion")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    def place(item: pytest.Item) -> int:
+        room = item.path.parent.name
+        return LONGEST.index(room) if room in LONGEST else len(LONGEST)
+
+    items.sort(key=place)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """A file's tests go to one worker, in their order: they share servers, and some look at their own children."""
+    from xdist.scheduler import LoadFileScheduling
+
+    config.option.loadscopereorder = False
+    return LoadFileScheduling(config, log)
 
 
 def make_bodies(positions, velocities=None, *, sizes=None, masses=None, spins=None, quaternions=None) -> Bodies:

@@ -19,7 +19,7 @@ KNOWS = {
     "measure": {"experiment", "scene"},
     "motion": GEOMETRY | {"measure"},
     "store": set(),
-    "compare": GEOMETRY | {"motion"},
+    "compare": GEOMETRY | {"motion", "measure"},
     "runner": GEOMETRY | {"experiment", "measure", "motion", "store"},
     "report": {"store", "measure"},
     "cli": GEOMETRY | {"experiment", "measure", "motion", "store", "compare", "runner", "report"},

@@ -16,6 +16,7 @@ from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.narrowphase.fcl_objects import FclObjects
 from harness.narrowphase.fcl_tree import FclTree
 from harness.narrowphase.judges import FclJudge, HullJudge, Judge, MeshJudge
+from harness.narrowphase.units import UNITS
 from harness.scene.scene import Scene, Shape
 
 Algorithm = Literal["brute-force", "grid", "tree"]
@@ -44,6 +45,8 @@ class Fcl:
 
     name = "fcl"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    units = UNITS
+    precision = "double"
     hull_axis = True
 
     def __init__(self, algorithm: Algorithm = "brute-force") -> None:

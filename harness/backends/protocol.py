@@ -1,7 +1,7 @@
 """What a backend is: a complete detector, asked for all touching pairs at given poses.
 
 A package adds one by a class of this form and an entry point in the group `harness.backends`; it is then named by
-`engine.backend` with the algorithm `native`.
+`engine.backend` with the algorithm `native`. What the functions below ask for, a backend may have beside that.
 """
 
 from __future__ import annotations
@@ -49,6 +49,16 @@ def counters(backend: Backend) -> Mapping[str, float]:
     """What the backend has counted since it was loaded (`pair_tests`, `narrow_tests`); empty if it does not count."""
     counted: Mapping[str, float] = getattr(backend, "counters", {})
     return counted
+
+
+def units(backend: Backend) -> str:
+    """In what lengths the backend tells its library of the scene; empty if it does not say."""
+    return str(getattr(backend, "units", ""))
+
+
+def precision(backend: Backend) -> str:
+    """Of its numbers, such as "double"; empty if it does not say."""
+    return str(getattr(backend, "precision", ""))
 
 
 def approximations(backend: Backend) -> Mapping[Shape, str]:

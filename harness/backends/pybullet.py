@@ -9,7 +9,7 @@ import numpy as np
 import pybullet
 
 from harness.arrays import Floats, Pairs
-from harness.narrowphase.units import unit_of
+from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
 from harness.scene.scene import Scene, Shape
 
@@ -24,6 +24,8 @@ class PyBullet:
     name = "pybullet"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
     approximations = {"mesh": "pybullet replaces each mesh by its convex hull: it never tests two concave meshes"}  # noqa: RUF012
+    units = UNITS
+    precision = "double; hull vertices rounded to 1e-4 of the extent"
 
     # Against its own hulls, read back: 1e-15 for bodies as they fly, but two vertices that overlap point to point are
     # missed, of pumpkins down to 1e-7 deep, of cubes to 3e-6.
@@ -45,12 +47,14 @@ class PyBullet:
         shapes: dict[float, int] = {}
         self._numbers = {}
         self._of_size: dict[float, int] = {}
-        for i, size in enumerate((scene.bodies.sizes / self._unit).tolist()):
+        sizes, places = (scene.bodies.sizes / self._unit).tolist(), (scene.bodies.positions / self._unit).tolist()
+        for i, (size, place) in enumerate(zip(sizes, places, strict=True)):
             if size not in shapes:
                 shapes[size] = self._shape(scene, size)
-            # a mass, because two bodies without one never show a contact
+            # a mass, because two bodies without one never show a contact; in its place, because bodies that are all
+            # made in one place become pairs of it, and thousands of bodies millions of pairs
             body = pybullet.createMultiBody(
-                baseMass=1.0, baseCollisionShapeIndex=shapes[size], physicsClientId=self._client
+                baseMass=1.0, baseCollisionShapeIndex=shapes[size], basePosition=place, physicsClientId=self._client
             )
             self._numbers[body] = i
             self._of_size.setdefault(size * self._unit, body)

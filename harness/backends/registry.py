@@ -1,4 +1,7 @@
-"""Backends by name, found by the entry points of the group `harness.backends`."""
+"""Backends by name, found by the entry points of the group `harness.backends`.
+
+An entry point may name an extra of its package in brackets, `module:Class [extra]`: the one that brings the library.
+"""
 
 from __future__ import annotations
 
@@ -42,8 +45,30 @@ def create(name: str, algorithm: str = "native") -> Backend:
             made = declared[name].load()
             backend: Backend = made() if algorithm == "native" else made(algorithm)
     except ImportError as error:
-        raise InputError(f'backend "{name}" cannot be used: {error}') from error
+        raise InputError(f'backend "{name}" cannot be used: {_why(declared[name], error)}') from error
     return backend
+
+
+def missing(name: str) -> str | None:
+    """Why a backend that is an extra of its package cannot be used, with what to do about it; None if it can.
+
+    Of other backends nothing is said: what they import is looked at where it can do no harm.
+    """
+    entry = _declared().get(name)
+    if entry is None or not entry.extras:
+        return None
+    try:
+        with silence():
+            entry.load()
+    except ImportError as error:
+        return f'backend "{name}" cannot be used: {_why(entry, error)}'
+    return None
+
+
+def install_command(name: str) -> str | None:
+    """What brings the library of a declared backend, where it is an extra."""
+    entry = _declared()[name]
+    return _command(entry) if entry.extras else None
 
 
 def available() -> dict[str, str | None]:
@@ -54,6 +79,8 @@ def available() -> dict[str, str | None]:
             with silence():
                 entry.load()
             found[name] = None
+        except ImportError as error:
+            found[name] = _why(entry, error)
         except Exception as error:  # a plugin may fail in any way; it must not take the others with it
             found[name] = f"{type(error).__name__}: {error}"
     return found
@@ -76,6 +103,15 @@ def silence() -> Iterator[None]:
             os.dup2(copy, stream)
             os.close(copy)
         os.close(nowhere)
+
+
+def _why(entry: EntryPoint, error: ImportError) -> str:
+    return f"not installed; {_command(entry)}" if entry.extras else f"{type(error).__name__}: {error}"
+
+
+def _command(entry: EntryPoint) -> str:
+    package = entry.dist.name if entry.dist else "harness"
+    return f"pip install '{package}[{','.join(entry.extras)}]'"
 
 
 def _declared() -> dict[str, EntryPoint]:

@@ -1,14 +1,16 @@
 """Hold backends against each other, and against exact arithmetic, on the same poses.
 
 The bodies of each scene fly through each other, whatever its response, and every backend is asked about every frame;
-scenes of random bodies are followed by pairs at first contact, where verdicts are hardest. Exits 1 if a backend is
-wrong beyond what its tolerance or its approximation explains, or fails at a pose.
+scenes of random bodies are followed by pairs at first contact, where verdicts are hardest. Where the experiment has a
+response, its first such scene is flown as well, by every backend for itself: the time of the first hit that only one
+of two answers is told, and what their flights have on average after it. What is found is kept in the database, and
+`harness report` shows it. Exits 1 if a backend is wrong beyond what its tolerance or its approximation explains, or
+fails at a pose.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
@@ -16,12 +18,11 @@ from harness.cli.overrides import add_override_argument, overrides_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from harness.compare.comparison import Case, Comparison, Failure
-    from harness.compare.poses import PoseSet
-    from harness.experiment.experiment import Experiment
+    from harness.compare.document import Reduced
+    from harness.compare.outcome import Case, Comparison
     from harness.scene.mesh import Mesh
 
-DEFAULT = ("fcl", "pybullet")
+DATABASE = "results/results.db"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,12 +31,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--backends",
         metavar="A,B",
-        help=f"two or more; those that the experiment names where it names several, else {','.join(DEFAULT)}",
+        help="two or more; those that the experiment names where it names several, else fcl,pybullet",
     )
     add_override_argument(parser)
     parser.add_argument(
         "--save", metavar="DIR", help="write real disagreements as the smallest experiments that show them"
     )
+    parser.add_argument("--db", metavar="FILE", help=f"the database that keeps the verdicts (default: {DATABASE})")
     parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
 
 
@@ -44,7 +46,9 @@ def run(arguments: argparse.Namespace) -> int:
     import json
     import sys
 
-    from harness.compare.comparison import Comparison, compare
+    from harness.cli.crosscheck import WHOLE, backends_of, cross_check, kept, key_of, reductions
+    from harness.compare.document import document
+    from harness.compare.outcome import Comparison
     from harness.runner.preparation import prepare
 
     def progress(line: str) -> None:
@@ -52,19 +56,37 @@ def run(arguments: argparse.Namespace) -> int:
 
     chosen = _chosen(arguments.backends)
     experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
+    if arguments.db is not None:
+        _open(arguments.db).close()  # before the work, not after it
     whole = Comparison()
+    rows: list[tuple[Reduced, bool]] = []
+    keep = []
     for experiment in experiments:
-        names = chosen or _named(experiment)
-        print(f"{experiment.name}: {', '.join(names)}", file=sys.stderr)
-        whole.add(compare(_settings(experiment, meshes), names, progress))
-    files = _saved(whole, meshes, arguments.save) if arguments.save else {}
+        names, lacking = backends_of(experiment, chosen)
+        whole.unsupported += lacking
+        progress(f"{experiment.name}: {', '.join(names)}")
+        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress):
+            small = reductions(found, meshes, WHOLE)
+            rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
+            keep.append(
+                (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE), kept(experiment, found, small))
+            )
+            whole.add(found)
+    # as `document` has them: what one backend loses first, then what both share
+    ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
+    files = _saved(ordered, meshes, arguments.save) if arguments.save else {}
     if arguments.json:
-        json.dump(_document(whole, files), sys.stdout, allow_nan=False)
+        json.dump(document(whole, ordered, files), sys.stdout, allow_nan=False)
         print()
         for line in whole.unsupported:
-            print(line, file=sys.stderr)
+            progress(line)
     else:
         _print(whole)
+    for row in ordered:
+        if row.tried and row.small is None:
+            case = row.case
+            progress(f"{case.wrong}, {case.pose.name}, call {case.call}: it depends on what was asked before")
+    _keep(keep, arguments.db)
     return 0 if whole.passed else 1
 
 
@@ -87,99 +109,41 @@ def _chosen(text: str | None) -> tuple[str, ...]:
     return chosen
 
 
-def _named(experiment: Experiment) -> tuple[str, ...]:
-    named = tuple(dict.fromkeys(point.engine.backend for point in experiment.points))
-    return named if len(named) > 1 else DEFAULT
+def _open(path: str) -> Any:
+    from harness.store.database import Database
+
+    return Database.open(path)
 
 
-def _settings(experiment: Experiment, meshes: dict[Path, Mesh]) -> Iterator[PoseSet]:
-    """What the experiment's points fly through, each scene once; then the hard poses of every shape of a mesh."""
-    from harness.compare.hard import hard_poses
-    from harness.compare.poses import flown
-    from harness.errors import InputError
-    from harness.runner.servers import mesh_of
-    from harness.runner.setting import SceneSizeError, build_scene
-    from harness.scene.launch import PlacementError
-
-    seen = set()
-    for point in experiment.points:
-        moved = (point.scene, point.motion.duration, point.motion.dt)
-        if repr(moved) in seen:
-            continue
-        seen.add(repr(moved))
-        try:
-            scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
-        except (PlacementError, SceneSizeError) as error:
-            raise InputError(f"{experiment.path}: {error}") from error
-        if len(scene.bodies) > 1:
-            yield flown(scene, point.motion.frames, point.motion.dt)
-    random = {(point.scene.shape, point.scene.mesh): point for point in experiment.points if point.scene.bodies is None}
-    for (shape, _), point in random.items():
-        yield from hard_poses(shape, mesh_of(experiment, point, meshes))
-
-
-# Minimising a case asks the backends some ten times; more cases of one backend show the same defect again.
-MOST_SAVED = 5
-
-
-def _saved(found: Comparison, meshes: dict[Path, Mesh], folder: str) -> dict[int, str]:
-    """The files of the first cases that every backend has lost, by the place of the case."""
+def _keep(found: list[tuple[str, tuple[str, str], str, dict[str, Any]]], chosen: str | None) -> None:
+    """Into the database. One that nobody asked for and that cannot be used costs a warning, not the comparison."""
+    import shlex
     import sys
+
+    from harness.errors import InputError
+
+    try:
+        with _open(chosen or DATABASE) as database:
+            for name, pair, key, document in found:
+                database.add_comparison(shlex.join(["harness", *sys.argv[1:]]), name, pair, key, document)
+    except InputError as error:
+        if chosen is not None:
+            raise
+        print(f"the verdicts are not kept: {error}", file=sys.stderr)
+
+
+def _saved(rows: list[Reduced], meshes: dict[Path, Mesh], folder: str) -> dict[int, str]:
+    """The files of the cases that were made smaller, by the place of the case."""
     from pathlib import Path
 
-    from harness.compare.minimise import minimise
     from harness.compare.reproduction import save
 
     files: dict[int, str] = {}
-    tried: dict[str, int] = {}
-    for place, case in enumerate(found.cases):
-        tried[case.wrong] = tried.get(case.wrong, 0) + 1
-        if tried[case.wrong] > MOST_SAVED:
-            continue
-        small = minimise(case)
-        if small is None:
-            print(
-                f"{case.wrong}, {case.pose.name}, call {case.call}: it depends on what was asked before",
-                file=sys.stderr,
-            )
-            continue
-        mesh = next((path for path, opened in meshes.items() if opened is case.scene.mesh), None)
-        files[place] = str(save(small, Path(folder), place, mesh))
+    for place, row in enumerate(rows):
+        if row.small is not None:
+            mesh = next((path for path, opened in meshes.items() if opened is row.case.scene.mesh), None)
+            files[place] = str(save(row.small, Path(folder), f"{row.name}-{place}", mesh))
     return files
-
-
-def _document(found: Comparison, files: dict[int, str]) -> dict[str, Any]:
-    from dataclasses import asdict
-
-    pairs = [{**asdict(tally), "backends": list(tally.backends)} for tally in found.tallies]
-    cases = [_case(case, files.get(place)) for place, case in enumerate(found.cases)] + [
-        _failure(failure) for failure in found.failures
-    ]
-    return {"pairs": pairs, "cases": cases}
-
-
-def _case(case: Case, file: str | None) -> dict[str, Any]:
-    where = {"pose": case.pose.name, "call": case.call, "touching": case.judgement.touching}
-    return {
-        "backends": list(case.backends),
-        "wrong": case.wrong,
-        "bodies": list(case.bodies),
-        "gap": case.judgement.gap,
-        "certificate": case.judgement.certificate | where,
-        "file": file,
-    }
-
-
-def _failure(failure: Failure) -> dict[str, Any]:
-    """A crash has no bodies, no gap and no proof but its reason."""
-    return {
-        "backends": list(failure.backends),
-        "wrong": failure.backend,
-        "bodies": [],
-        "gap": None,
-        "certificate": {"kind": "crashed", "pose": failure.pose, "call": failure.call, "reason": failure.reason},
-        "file": None,
-    }
 
 
 def _print(found: Comparison) -> None:
@@ -189,15 +153,38 @@ def _print(found: Comparison) -> None:
         print(
             f"{' and '.join(tally.backends)}, {tally.shape}: {tally.verdicts} verdicts at {tally.poses} poses: {counts}"
         )
+    for checked in found.checked:
+        print(
+            f"{' and '.join(checked.backends)}, {checked.shape}: of what they agree on, {checked.verdicts} verdicts "
+            f"were judged: {checked.contradicted} wrong"
+        )
+    for one in found.approximations:
+        print(
+            f"{one.backend} for {one.shape}, as bodies fly: {one.false_share:.3g} of its hits are none "
+            f"({one.false_hits} of {one.reported}), {one.missed_share:.3g} of the touching pairs are missed "
+            f"({one.misses} of {one.touching})"
+        )
+    for flight in found.flights:
+        parted = "never" if flight.diverged is None else f"at {flight.diverged:.6g} s"
+        rates = "; ".join(
+            f"{one.backend} {one.pair_hits_per_second:.4g} pair hits a second, energy {one.energy_change:+.2g}"
+            for one in flight.afterwards
+        )
+        print(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
     for line in found.unsupported:
         print(line)
-    for case in found.cases:
-        truth = case.judgement
-        state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
-        i, j = case.bodies
-        print(
-            f"{case.wrong} is wrong: at {case.pose.name} (call {case.call}) bodies {i} and {j} {state}, "
-            f"proven by a {truth.certificate['kind']}"
-        )
+    for case in found.cases + found.shared:
+        print(_sentence(case))
     for failure in found.failures:
         print(f"{failure.backend} failed at {failure.pose} (call {failure.call}): {failure.reason}")
+
+
+def _sentence(case: Case) -> str:
+    truth = case.judgement
+    state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
+    verb = "are both" if " and " in case.wrong else "is"
+    i, j = case.bodies
+    return (
+        f"{case.wrong} {verb} wrong: at {case.pose.name} (call {case.call}) bodies {i} and {j} {state}, "
+        f"proven by a {truth.certificate['kind']}"
+    )

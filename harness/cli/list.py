@@ -41,10 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(listing, indent=2))
         return 0
     _print("Experiments", [(row["name"], _experiment_line(row)) for row in listing["experiments"]])
-    _print(
-        "Backends",
-        [(row["name"], f"missing: {row['missing']}" if row["missing"] else "installed") for row in listing["backends"]],
-    )
+    _print("Backends", [line for row in listing["backends"] for line in _backend_lines(row)])
     _print("Algorithms", [(row["name"], row["description"]) for row in listing["algorithms"]])
     _print("Metrics", [(row["name"], f"{row['unit']:4}  {row['description']}") for row in listing["metrics"]])
     return 0
@@ -85,9 +82,41 @@ def _experiment_line(row: dict[str, Any]) -> str:
 
 
 def _backends() -> list[dict[str, Any]]:
-    from harness.backends.registry import available
+    """Every declared backend: why it is missing and what brings it, or what it says of itself."""
+    from harness.backends.registry import available, install_command
 
-    return [{"name": name, "missing": _one_line(why)} for name, why in available().items()]
+    rows = []
+    for name, why in available().items():
+        row: dict[str, Any] = {"name": name, "missing": _one_line(why), "install": install_command(name)}
+        rows.append(row | (_stated(name) if why is None else {}))
+    return rows
+
+
+def _stated(name: str) -> dict[str, Any]:
+    from harness.backends.protocol import approximations, precision, units
+    from harness.backends.registry import create
+    from harness.errors import InputError
+
+    try:
+        backend = create(name)
+        bands = {shape: float(backend.tolerance(shape)) for shape in backend.shapes}
+    except InputError as error:
+        return {"missing": _one_line(str(error))}
+    except Exception as error:  # a plugin may fail in any way
+        return {"missing": _one_line(f"{type(error).__name__}: {error}")}
+    said = {"units": units(backend) or None, "precision": precision(backend) or None}
+    return {"shapes": list(backend.shapes), "tolerance": bands, **said, "approximations": dict(approximations(backend))}
+
+
+def _backend_lines(row: dict[str, Any]) -> list[tuple[str, str]]:
+    """One line, and below it what a person should know of an installed one."""
+    if row["missing"]:
+        return [(row["name"], f"missing: {row['missing']}")]
+    bands = ", ".join(f"{shape} to {band:g} of size" for shape, band in row["tolerance"].items())
+    notes = [f"precision: {row['precision']}"] if row["precision"] else []
+    notes += [f"units: {row['units']}"] if row["units"] else []
+    notes += row["approximations"].values()
+    return [(row["name"], f"installed; {bands}"), *(("", note) for note in notes)]
 
 
 def _one_line(text: str | None) -> str | None:

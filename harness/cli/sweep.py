@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from harness.runner.schedule import Choice
     from harness.runner.sweep import Summary
     from harness.scene.mesh import Mesh
+    from harness.store.database import Database
 
 DATABASE = "results/results.db"
 
@@ -86,7 +87,10 @@ def run(arguments: argparse.Namespace) -> int:
         except KeyboardInterrupt:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
             return 130
+        compared = _compare(chosen, meshes, database, command, arguments)
     _say(summary, arguments)
+    for line in compared:
+        print(line)
     return 1 if summary.failed else 0
 
 
@@ -119,6 +123,43 @@ def _executor(arguments: argparse.Namespace) -> Executor | None:
     from harness.runner.cluster import Cluster
 
     return Cluster(address)
+
+
+def _compare(
+    experiments: Sequence[Experiment],
+    meshes: Mapping[Path, Mesh],
+    database: Database,
+    command: str,
+    arguments: argparse.Namespace,
+) -> list[str]:
+    """Hold backends against each other where an experiment says so, unless it was done; what was found, a line each.
+
+    A library that is wrong is a finding of the report, not a failure of the sweep; `harness compare` exits 1.
+    """
+    import sys
+
+    wanted = [experiment for experiment in experiments if experiment.measure.compare]
+    if not wanted:
+        return []
+    from harness.cli.crosscheck import SWEPT, backends_of, cross_check, kept, key_of, reductions
+
+    done = set() if arguments.fresh else database.history.compared()
+    lines = []
+    for experiment in wanted:
+        names, _ = backends_of(experiment)
+        pairs = [(a, b) for place, a in enumerate(names) for b in names[place + 1 :]]
+        for pair in pairs:
+            key = key_of(experiment, meshes, pair, SWEPT)
+            if key in done:
+                continue
+            if not arguments.quiet:
+                print(f"{experiment.name}: comparing {' and '.join(pair)}", file=sys.stderr)
+            for _, found in cross_check(experiment, meshes, pair, SWEPT):
+                rows = reductions(found, meshes, SWEPT)
+                database.add_comparison(command, experiment.name, pair, key, kept(experiment, found, rows))
+                real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
+                lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
+    return lines
 
 
 def _positive(text: str) -> int:
@@ -174,6 +215,8 @@ def _foretell(
         time = "no run like these was ever done, so there is no estimate of time"
     else:
         time = f"about {spoken(total + START_UP * len(backends))}, from earlier runs of {known} of them"
+    for why in work.lacking:
+        print(f"points passed over: {why}")
     print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
@@ -195,6 +238,8 @@ def _say(summary: Summary, arguments: argparse.Namespace) -> None:
     failed_before = summary.kept.total() - summary.kept["ok"]
     if failed_before:
         print(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
+    for why in summary.lacking:
+        print(f"points passed over: {why}")
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
     option = "" if arguments.db == DATABASE else f" --db {arguments.db}"

@@ -12,6 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+import numpy as np
+
+from harness.arrays import Floats
 from harness.compare.exact import Point, determinant, dot, minus
 
 
@@ -59,6 +62,7 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
     ----------
     first, second : integer points, at least one each
     """
+    rough, other_rough = _rough(first), _rough(second)
     simplex = [(0, 0)]
     while True:
         corners = [minus(first[a], second[b]) for a, b in simplex]
@@ -70,11 +74,22 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
                 tuple((a, weight) for (a, _), weight in zip(simplex, weights, strict=True)),
                 tuple((b, weight) for (_, b), weight in zip(simplex, weights, strict=True)),
             )
-        least = min(range(len(first)), key=lambda a: dot(nearest, first[a]))
-        most = max(range(len(second)), key=lambda b: dot(nearest, second[b]))
-        if dot(nearest, minus(first[least], second[most])) * total >= dot(nearest, nearest):
-            return Plane(nearest)
+        # floats propose the next pair of points, which may be any that comes nearer; only where they find none are all
+        # looked at
+        along, reached = _rough([nearest])[0], dot(nearest, nearest)
+        least, most = int((rough @ along).argmin()), int((other_rough @ along).argmax())
+        if dot(nearest, minus(first[least], second[most])) * total >= reached:
+            least = min(range(len(first)), key=lambda a: dot(nearest, first[a]))
+            most = max(range(len(second)), key=lambda b: dot(nearest, second[b]))
+            if dot(nearest, minus(first[least], second[most])) * total >= reached:
+                return Plane(nearest)
         simplex.append((least, most))
+
+
+def _rough(points: Sequence[Point]) -> Floats:
+    """(n, 3): the points in floats, whatever their unit; integers may be too large for one."""
+    excess = max(0, max(abs(part).bit_length() for point in points for part in point) - 512)
+    return np.array([[float(part >> excess) for part in point] for point in points])
 
 
 def _nearest_to_origin(corners: Sequence[Point]) -> tuple[tuple[int, ...], list[int], int]:

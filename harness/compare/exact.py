@@ -7,10 +7,11 @@ unit 1 / (2^k |q1|² |q2|²), so that they can be held as Python integers, which
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
+
+import numpy as np
 
 from harness.arrays import Floats
 
@@ -43,20 +44,15 @@ def world_points(first: Placed, second: Placed) -> tuple[list[Point], list[Point
     unit : m; a coordinate is its integer times this, relative to the position of the first body
     """
     (rotation, norm), (other_rotation, other_norm) = _rotation(first.quaternion), _rotation(second.quaternion)
-    between = [
-        Fraction(b) - Fraction(a) for a, b in zip(first.position.tolist(), second.position.tolist(), strict=True)
-    ]
-    rows = [_fractions(body.points) for body in (first, second)]
-    # denominators of floats are powers of two, so the largest of them is a multiple of every other
-    denominator = max(
-        *(number.denominator for number in between),
-        *(number.denominator for body in rows for row in body for number in row),
-    )
-    shift = [int(number * denominator) * norm * other_norm for number in between]
-    one = [_turned(rotation, _scaled(row, denominator * other_norm)) for row in rows[0]]
-    other = [_turned(other_rotation, _scaled(row, denominator * norm)) for row in rows[1]]
+    rows = [first.points, second.points, first.position[None], second.position[None]]
+    scaled, quantum = _integers(np.concatenate(rows))
+    count = len(first.points)
+    start, end = scaled[-2], scaled[-1]
+    shift = [(b - a) * norm * other_norm for a, b in zip(start, end, strict=True)]
+    one = [_turned(rotation, (x * other_norm, y * other_norm, z * other_norm)) for x, y, z in scaled[:count]]
+    other = [_turned(other_rotation, (x * norm, y * norm, z * norm)) for x, y, z in scaled[count:-2]]
     moved = [(x + shift[0], y + shift[1], z + shift[2]) for x, y, z in other]
-    return one, moved, Fraction(1, denominator * norm * other_norm)
+    return one, moved, quantum / (norm * other_norm)
 
 
 def dot(a: Point, b: Point) -> int:
@@ -74,13 +70,15 @@ def determinant(a: Point, b: Point, c: Point) -> int:
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 
 
-def _fractions(points: Floats) -> list[list[Fraction]]:
-    return [[Fraction(x) for x in row] for row in points.tolist()]
-
-
-def _scaled(row: Sequence[Fraction], factor: int) -> Point:
-    x, y, z = (number.numerator * (factor // number.denominator) for number in row)
-    return x, y, z
+def _integers(points: Floats) -> tuple[list[Point], Fraction]:
+    """Points as multiples of the largest power of two that all their coordinates are multiples of, and that power."""
+    mantissas, exponents = np.frexp(points)
+    digits = (mantissas * 2.0**53).astype(np.int64)
+    lowest = int(exponents[digits != 0].min(initial=1024))
+    shifts = np.where(digits != 0, exponents - lowest, 0)
+    rows = zip(digits.tolist(), shifts.tolist(), strict=True)
+    scaled = [(x << i, y << j, z << k) for (x, y, z), (i, j, k) in rows]
+    return scaled, Fraction(2) ** (lowest - 53)
 
 
 def _turned(rotation: Matrix, point: Point) -> Point:

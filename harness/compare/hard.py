@@ -48,22 +48,23 @@ class _Contact(NamedTuple):
     outward: Floats
 
 
-def hard_poses(shape: Shape, mesh: Mesh | None) -> Iterator[PoseSet]:
+def hard_poses(shape: Shape, mesh: Mesh | None, every: int = 1) -> Iterator[PoseSet]:
     """Pairs at first contact, deep inside each other, contained and concentric, of many sizes and far away.
 
     Parameters
     ----------
     shape : what the narrow phase is to see
     mesh : None for spheres
+    every : take only every so manieth pose
     """
     for size, other, away in _SETTINGS:
-        yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away))
+        yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away, every=every), hard=True)
 
 
-def _poses(scene: Scene, away: float) -> tuple[Pose, ...]:
+def _poses(scene: Scene, away: float, every: int) -> tuple[Pose, ...]:
     rng = np.random.default_rng(_SEED)
     first, second = scene.bodies.sizes.tolist()
-    return (*_first_contacts(scene, away, rng), *_overlaps((first, second), away, rng))
+    return (*_first_contacts(scene, away, rng), *_overlaps((first, second), away, rng))[::every]
 
 
 def _first_contacts(scene: Scene, away: float, rng: np.random.Generator) -> Iterator[Pose]:

@@ -1,58 +1,119 @@
-"""The smallest scene in which two backends still disagree: as few bodies as do it, with numbers as round as do it."""
+"""The smallest scene in which a backend is still wrong: as few bodies as do it, with numbers as round as do it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from harness.arrays import Floats
-from harness.compare.comparison import Case, disagreements
+from harness.compare.comparison import disagreements
 from harness.compare.isolated import UnusableError
+from harness.compare.outcome import Case
 from harness.compare.poses import Pose
 from harness.scene.bodies import Bodies
 from harness.scene.scene import Scene
 
-# Digits after the point that positions and quaternions are rounded to, from the roundest.
-_DIGITS = (2, 4, 6, 9, 12)
+# Digits after the point that coordinates are rounded to, from the roundest.
+_DIGITS = (0, 1, 2, 3, 4, 6, 9, 12)
 
 
 def minimise(case: Case) -> Case | None:
     """The same backend wrong in a scene of its own, with its bodies at rest at their poses.
 
+    Bodies are taken away, first by halves, then one by one, as long as the backend is still wrong about any that are
+    left; then coordinates, orientations and sizes are rounded as far as that goes.
+
     Returns
     -------
     Case or None
-        None if no scene of two or three bodies shows it when asked once: it then depends on what was asked before.
+        None if the scene does not show it when asked once: it then depends on what was asked before.
     """
-    for chosen in _choices(case):
-        small = _wrong_again(case, _at_rest(case.scene, case.pose, chosen))
-        if small is not None:
-            return _rounded(small)
-    return None
+    small = _wrong_again(case, _at_rest(case.scene, case.pose, list(case.bodies)))
+    if small is None:
+        small = _with_fewer_bodies(case)
+    return None if small is None else _Rounding(case, small).result()
 
 
-def _choices(case: Case) -> Iterator[list[int]]:
-    """The two bodies, then both with each of the others."""
-    yield list(case.bodies)
-    for other in range(len(case.scene.bodies)):
-        if other not in case.bodies:
-            yield sorted((*case.bodies, other))
+def _with_fewer_bodies(case: Case) -> Case | None:
+    chosen = list(range(len(case.scene.bodies)))
+    small = _wrong_again(case, _at_rest(case.scene, case.pose, chosen))
+    if small is None:
+        return None
+    length = len(chosen) // 2
+    while length:
+        before, place = len(chosen), 0
+        while place < len(chosen):
+            rest = chosen[:place] + chosen[place + length :]
+            found = _wrong_again(case, _at_rest(case.scene, case.pose, rest)) if len(rest) > 1 else None
+            if found is None:
+                place += length
+            else:
+                chosen, small = rest, found
+        if length > 1 or len(chosen) == before:
+            length //= 2
+    return small
 
 
-def _rounded(case: Case) -> Case:
-    bodies = case.scene.bodies
-    for digits in _DIGITS:
-        positions = (bodies.positions - bodies.positions[0]).round(digits)
-        found = _wrong_again(case, _placed(case.scene, positions, bodies.quaternions.round(digits)))
+class _Rounding:
+    """Rounds the numbers of a case as long as the backend stays wrong."""
+
+    def __init__(self, case: Case, small: Case) -> None:
+        self._case, self._small = case, small
+
+    def result(self) -> Case:
+        """The roundest case found."""
+        bodies = self._bodies
+        self._try(positions=bodies.positions - bodies.positions[0])
+        upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1))
+        if not self._try(quaternions=upright):
+            for body in range(len(bodies)):
+                self._try(quaternions=np.where(np.arange(len(bodies))[:, None] == body, upright, self._turns))
+        for name in ("sizes", "quaternions", "positions"):
+            self._round_all(name)
+        for body in range(len(bodies)):
+            for axis in range(3):
+                self._round_one(body, axis)
+        return self._small
+
+    @property
+    def _bodies(self) -> Bodies:
+        return self._small.scene.bodies
+
+    @property
+    def _turns(self) -> Floats:
+        return self._bodies.quaternions
+
+    def _round_all(self, name: str) -> None:
+        for digits in _DIGITS:
+            if self._try(**{name: getattr(self._bodies, name).round(digits)}):
+                return
+
+    def _round_one(self, body: int, axis: int) -> None:
+        for digits in _DIGITS:
+            positions = self._bodies.positions.copy()
+            positions[body, axis] = round(float(positions[body, axis]), digits)
+            if np.array_equal(positions, self._bodies.positions):
+                return  # it is as round already
+            if self._try(positions=positions):
+                return
+
+    def _try(self, **changed: Floats) -> bool:
+        """Take these numbers, if the backend is wrong with them as well."""
+        scene = self._small.scene
+        bodies = replace(scene.bodies, **changed)
+        if (bodies.sizes <= 0).any() or not np.linalg.norm(bodies.quaternions, axis=1).all():
+            return False
+        lengths = np.linalg.norm(bodies.quaternions, axis=1, keepdims=True)
+        bodies = replace(bodies, quaternions=bodies.quaternions / lengths, masses=bodies.sizes**3)
+        found = _wrong_again(self._case, replace(scene, bodies=bodies, hulls={}))
         if found is not None:
-            return found
-    return case
+            self._small = found
+        return found is not None
 
 
 def _wrong_again(case: Case, scene: Scene) -> Case | None:
-    """A real disagreement in this scene that the same backend loses."""
+    """The first verdict in this scene that is wrong in the same way, if there is one."""
     pose = Pose("at rest", scene.bodies.positions, scene.bodies.quaternions)
     try:
         found = disagreements(scene, pose, case.backends)
@@ -66,9 +127,3 @@ def _at_rest(scene: Scene, pose: Pose, chosen: list[int]) -> Scene:
     still = np.zeros((len(chosen), 3))
     bodies = Bodies(pose.positions[chosen], still, pose.quaternions[chosen], still, sizes, masses)
     return replace(scene, bodies=bodies, hulls={})
-
-
-def _placed(scene: Scene, positions: Floats, quaternions: Floats) -> Scene:
-    lengths = np.linalg.norm(quaternions, axis=1, keepdims=True)
-    turned = np.where(lengths > 0, quaternions / np.where(lengths > 0, lengths, 1.0), scene.bodies.quaternions)
-    return replace(scene, bodies=replace(scene.bodies, positions=positions, quaternions=turned))

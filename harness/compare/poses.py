@@ -35,10 +35,12 @@ class PoseSet:
     scene : Scene
     poses : what makes the poses, in the order in which every backend is asked, from the scene with the hulls that are
         really compared: contacts are exact only of those
+    hard : whether the bodies were put where verdicts are hard; else they fly, as a user's do
     """
 
     scene: Scene
     poses: Callable[[Scene], Sequence[Pose]]
+    hard: bool = False
 
 
 def flown(scene: Scene, frames: int, dt: float) -> PoseSet:

@@ -38,8 +38,8 @@ def judge_surfaces(
     position, other_position : (3,) float array, m
     quaternion, other_quaternion : (4,) float array, w x y z
     """
-    one = _turned(first.vertices, quaternion)
-    other = _turned(second.vertices, other_quaternion) + (other_position - position)
+    one = turned(first.vertices, quaternion)
+    other = turned(second.vertices, other_quaternion) + (other_position - position)
     slack = _ROUNDING * max(float(np.abs(one).max()), float(np.abs(other).max()), float(np.abs(position).max()))
     nearest_vertices = float(cKDTree(one).query(other)[0].min())
     triangles, other_triangles = one[first.faces], other[second.faces]
@@ -123,7 +123,7 @@ def _inside(point: Floats, triangles: Floats) -> bool:
     return bool(abs(np.arctan2(volume, base).sum()) > np.pi)
 
 
-def _turned(points: Floats, quaternion: Floats) -> Floats:
+def turned(points: Floats, quaternion: Floats) -> Floats:
     """Points turned by a quaternion w x y z."""
     w, vector = quaternion[0], quaternion[1:]
     across = 2.0 * np.cross(vector, points)

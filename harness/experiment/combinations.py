@@ -17,6 +17,8 @@ Values = Mapping[str, Any]
 # What a backend can be asked for. A backend that is not named here brings its own detection, whole.
 ALGORITHMS = {"fcl": ("brute-force", "grid", "tree", "predictive")}
 OTHER_ALGORITHMS = ("native",)
+# The shapes of a backend that lacks one; what a backend from elsewhere holds is known when it is asked.
+SHAPES = {"trimesh": ("hull", "mesh")}
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,16 @@ def backend_has_the_algorithm(values: Values) -> Conflict | None:
     return None
 
 
+def backend_has_the_shape(values: Values) -> Conflict | None:
+    """What a library cannot hold it cannot be asked about."""
+    backend, shapes = values["backend"], SHAPES.get(values["backend"])
+    if shapes is not None and values["shape"] not in shapes:
+        message = f"backend {backend} has no shape {{}}, only {listed(shapes)}"
+        return Conflict(message, ("backend", "shape"), excludable=True)
+    return None
+
+
 SCENE: tuple[Rule, ...] = (has_count_or_bodies, has_one_box, has_a_mesh)
 MOTION: tuple[Rule, ...] = (restitution_has_an_effect, frames_can_be_counted)
 ENGINE: tuple[Rule, ...] = (backend_has_the_algorithm,)
-POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE)
+POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE, backend_has_the_shape)

@@ -7,7 +7,7 @@ they are all there is. Points that come out the same are one point.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -16,10 +16,10 @@ from harness.experiment.combinations import POINT, Conflict, conflicts
 from harness.experiment.complaints import Complaints, Origin
 from harness.experiment.declaration import Axis, Declaration, ExcludeRow, Given
 from harness.experiment.document import KEY
-from harness.experiment.experiment import Point
+from harness.experiment.experiment import Point, Reference
 from harness.experiment.leaves import INSTEAD_OF, LEAVES, SECTIONS, identity
 from harness.experiment.messages import flow, listed
-from harness.experiment.schema import MeasureSpec
+from harness.experiment.schema import MeasureSpec, ReferenceSpec, Shape
 
 # All points are held in memory, a few kilobytes each.
 MOST_POINTS = 10**5
@@ -27,6 +27,7 @@ MOST_POINTS = 10**5
 MOST_COMPARISONS = 10**7
 
 Resolved = dict[str, Given]
+_EXACT_FIRST: tuple[Shape, ...] = ("mesh", "hull", "sphere")
 DEFAULTS: Resolved = {name: Given(leaf.default, None, identity(leaf.default)) for name, leaf in LEAVES.items()}
 
 
@@ -82,7 +83,7 @@ def expand(declaration: Declaration, measure: MeasureSpec, complaints: Complaint
         for point in resolved:
             first.setdefault(_key(point), point)
         unique = list(first.values())
-        expansion.points = tuple(_points(unique))
+        expansion.points = tuple(_points(unique, measure.reference))
         expansion.swept = _swept(unique, mentioned)
     return expansion
 
@@ -219,8 +220,10 @@ def _key(point: Resolved) -> tuple[str | None, ...]:
     return tuple(point[leaf].identity for leaf in LEAVES)
 
 
-def _points(resolved: Iterable[Resolved]) -> Iterator[Point]:
+def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> Iterator[Point]:
     """Points; equal scenes, motions and engines are one object."""
+    shapes = {point["shape"].value for point in resolved if point["mesh"].value is not None}
+    most_exact: Shape = next((shape for shape in _EXACT_FIRST if shape in shapes), "sphere")
     made: dict[tuple[str | None, ...], Any] = {}
     for point in resolved:
         parts = {}
@@ -229,7 +232,8 @@ def _points(resolved: Iterable[Resolved]) -> Iterator[Point]:
             if key not in made:
                 made[key] = model(**{leaf: point[leaf].value for leaf in model.model_fields})
             parts[section] = made[key]
-        yield Point(**parts)
+        shape: Shape = "sphere" if point["mesh"].value is None else most_exact
+        yield Point(**parts, reference=Reference(reference, shape) if reference else None)
 
 
 def _swept(points: list[Resolved], mentioned: list[str]) -> tuple[str, ...]:

@@ -13,16 +13,31 @@ from harness.experiment.criterion import Criterion
 from harness.experiment.document import Document
 from harness.experiment.leaves import identity, plain
 from harness.experiment.presentation import Published, ReportSpec
-from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, SceneSpec
+from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, ReferenceSpec, SceneSpec, Shape
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the errors of a point are measured against: such a run of the same motion.
+
+    Parameters
+    ----------
+    spec : as the experiment declares it
+    shape : the most exact of all shapes that the experiment has, the others being approximations of it
+    """
+
+    spec: ReferenceSpec
+    shape: Shape
 
 
 @dataclass(frozen=True)
 class Point:
-    """One combination of values, fully resolved: what a run is to do."""
+    """One combination of values, fully resolved: what a run is to do, and what it is measured against."""
 
     scene: SceneSpec
     motion: MotionSpec
     engine: EngineSpec
+    reference: Reference | None = None
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -66,6 +81,12 @@ class Experiment:
     def runs(self) -> int:
         """How many runs it takes."""
         return len(self.points) * self.measure.repeats
+
+    @property
+    def metrics(self) -> frozenset[str]:
+        """The metrics that its expectations, claims and report name."""
+        named = {row.metric for row in (*self.expect, *self.claims)}
+        return frozenset(named.union(self.report.y if self.report else ()))
 
     def problem(self, path: Sequence[str | int], message: str) -> Problem:
         """A problem with the value at a key path of the file, such as ('scene', 'mesh')."""

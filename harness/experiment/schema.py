@@ -123,7 +123,7 @@ class EngineSpec(Declared):
 class ReferenceSpec(Declared):
     """What errors are measured against."""
 
-    algorithm: Algorithm = Field("predictive", description="algorithm of the reference run")
+    algorithm: Literal["predictive"] = Field("predictive", description="of the reference run; frames would miss hits")
     tolerance: Positive = Field(1e-10, description="its tolerance, of size")
 
 
@@ -135,4 +135,5 @@ class MeasureSpec(Declared):
     memory: Bytes = Field(4 * 1024**3, description="a run may take this much, bytes or text such as 4GiB")
     tier: Literal["default", "long"] = Field("default", description="long: only with `harness sweep --long`")
     max_runs: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(10_000, description="more runs than this are refused")
+    compare: Switch = Field(False, description="hold the backends of the points against each other, after the runs")
     reference: ReferenceSpec | None = Field(None, description="measure errors against such a run")

@@ -16,13 +16,18 @@ class Conservation:
     ----------
     energy_drift : float
         Largest |E - E0| / E0 observed; 0 where E0 is 0.
+    momentum_drift : float
+        Largest change of the total momentum observed, less what the walls gave, of the sum of m|v| at the start; 0
+        where that is 0.
     """
 
     def __init__(self, bodies: Bodies) -> None:
         self._masses = bodies.masses
         self._start = energy(bodies.velocities, bodies.masses)
+        self._momentum = bodies.masses @ bodies.velocities
         self.momentum_scale = float(bodies.masses @ np.linalg.norm(bodies.velocities, axis=1))
         self.energy_drift = 0.0
+        self.momentum_drift = 0.0
 
     def observe(self, velocities: Floats) -> None:
         """Take note of the energy at these velocities, (n, 3) m/s."""
@@ -32,6 +37,14 @@ class Conservation:
             drift = abs(now - self._start) / self._start
             if not drift <= self.energy_drift:
                 self.energy_drift = drift
+
+    def observe_momentum(self, velocities: Floats, wall_impulses: Floats) -> None:
+        """Take note of the momentum at these velocities, (n, 3) m/s, after so much from x-, x+, … (6,), kg m/s."""
+        if self.momentum_scale > 0.0:
+            given = wall_impulses[0::2] - wall_impulses[1::2]
+            strayed = float(np.linalg.norm(self._masses @ velocities - self._momentum - given)) / self.momentum_scale
+            if not strayed <= self.momentum_drift:
+                self.momentum_drift = strayed
 
 
 @kernel

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from harness.measure.statistics import Summary, summary
 
-# x -> repeat -> cost
-Costs = Mapping[float, Mapping[int, float]]
+# x -> repeat (and where it ran) -> cost
+Costs = Mapping[float, Mapping[Any, float]]
 
 
 @dataclass(frozen=True)

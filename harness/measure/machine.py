@@ -13,6 +13,7 @@ from typing import Any
 
 _PACKAGES = (
     "harness", "numpy", "scipy", "numba", "python-fcl", "pybullet", "trimesh", "pandas", "matplotlib", "pydantic",
+    "coal", "mujoco",
 )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from math import pi, sqrt
 
 import numpy as np
-from scipy.optimize import brentq
 
 from harness.arrays import Floats
 
@@ -48,6 +47,8 @@ def wall_pressure(count: int, diameter: float, temperature: float, sides: Floats
     ValueError
         If no packing of the bulk below .6 holds so many spheres: the theory is one of fluids.
     """
+    from scipy.optimize import brentq  # only event-driven runs need it
+
     reach = np.asarray(sides) / diameter - 1.0  # in diameters
     volume, area = float(np.prod(reach)), 2 * float(reach[0] * reach[1] + reach[1] * reach[2] + reach[2] * reach[0])
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -22,6 +22,8 @@ from harness.measure.selection import grouped, matching, plain, tied, values, va
 from harness.measure.statistics import CONFIDENCE, Summary, fit_exponent, paired_ratio, summary
 
 Kind = Literal["expectation", "claim"]
+
+REJECTED = "rejected"  # the metric that says of each run whether it was refused
 
 _ROUNDING = 1e-6  # of the exponent of an exact power law
 
@@ -71,6 +73,9 @@ def judge(criterion: Criterion, runs: pd.DataFrame, swept: Sequence[str], kind: 
     swept : the leaves that vary in it
     kind : whether the row stands in `expect` or in `claims`
     """
+    if criterion.metric == REJECTED:  # a run that was refused has an answer to this, though no other
+        runs = runs.assign(**{REJECTED: (runs["status"] == REJECTED).astype(float)})
+        runs["status"] = runs["status"].where(runs["status"] != REJECTED, "ok")
     if criterion.metric not in runs:
         runs = runs.assign(**{criterion.metric: math.nan})
     chosen = matching(runs, criterion.where)
@@ -82,6 +87,17 @@ def judge(criterion: Criterion, runs: pd.DataFrame, swept: Sequence[str], kind: 
     if criterion.ratio_to is not None:
         return _folded(case, *_ratios(case, criterion.ratio_to), "points")
     return _folded(case, _points(case), chosen, "points")
+
+
+def expected_refusals(criteria: Iterable[Criterion], runs: pd.DataFrame) -> set[tuple[str, int]]:
+    """(point, repeat) of the runs that were rejected where the criteria say that they must be."""
+    found: set[tuple[str, int]] = set()
+    for criterion in criteria:
+        if criterion.metric == REJECTED and limits(criterion).hold(1.0):
+            chosen = matching(runs, criterion.where)
+            chosen = chosen[chosen["status"] == REJECTED]
+            found.update(zip(chosen["point"], chosen["repeat"], strict=True))
+    return found
 
 
 @dataclass(frozen=True)

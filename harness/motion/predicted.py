@@ -21,6 +21,7 @@ from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form
 from harness.motion.response import Response
+from harness.motion.soundness import refuse_lost
 from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene
 
@@ -79,7 +80,10 @@ def fly_predicted(
         simulation.advance(duration * look / LOOKS)
         clock.lap("run_seconds")
         positions, velocities = simulation.positions, simulation.velocities
+        refuse_lost(positions, velocities, simulation.time)
         conservation.observe(velocities)
+        if response == "elastic":
+            conservation.observe_momentum(velocities, simulation.wall_impulses)
         outside |= (np.abs(positions) > scene.box.half).any(axis=1)
         if depth is not None:
             depth.look(positions, duration * look / LOOKS)
@@ -100,6 +104,8 @@ def fly_predicted(
     if counted["events"]:
         metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
         metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
+    if response == "elastic":
+        metrics["momentum_drift"] = conservation.momentum_drift
     if depth is not None:
         metrics["max_penetration"] = depth.deepest
     return Outcome(metrics, _trace(scene, simulation, duration, counted) if traced else None)

@@ -61,7 +61,7 @@ class Answers:
             The pairs that were approaching, and so were answered.
         """
         hits = np.empty(len(pairs), np.bool_)
-        _answer_pairs(
+        answer_pairs(
             pairs, positions, velocities, self._masses, self.elastic, self._restitution, self._added, self.changed, hits
         )
         return hits
@@ -85,7 +85,7 @@ class Answers:
 
 
 @kernel
-def _answer_pairs(
+def answer_pairs(
     pairs: Pairs,
     positions: Floats,
     velocities: Floats,
@@ -96,6 +96,7 @@ def _answer_pairs(
     changed: Flags,
     hits: Flags,
 ) -> None:
+    """The kernel of `Answers.pairs`; `added` (x, y, z and the square of a norm), `changed` and `hits` are written."""
     for k in range(len(pairs)):
         i, j = pairs[k]
         gap = positions[j] - positions[i]

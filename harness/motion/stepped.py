@@ -18,6 +18,7 @@ from harness.motion.kinematics import Flight
 from harness.motion.observer import Folds, Observer, Onsets
 from harness.motion.plan import Plan
 from harness.motion.response import Answers, Response
+from harness.motion.soundness import refuse_lost
 from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
@@ -76,6 +77,7 @@ def fly_stepped(
         clock.lap("box_seconds")
         observer.frame(time, pairs, hits, walls)
 
+    refuse_lost(flight.positions, flight.velocities, frames * dt)
     counted: dict[str, float] = {
         "frames": frames,
         **_pair_counters(backend),

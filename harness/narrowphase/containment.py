@@ -6,8 +6,6 @@ from __future__ import annotations
 from math import atan2, pi, sqrt
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from harness.arrays import Floats, Pairs
 from harness.kernel import kernel
@@ -25,6 +23,9 @@ class Containment:
     """
 
     def __init__(self, mesh: Mesh) -> None:
+        from scipy.sparse import coo_array  # only runs with meshes of different sizes need it
+        from scipy.sparse.csgraph import connected_components
+
         faces = mesh.faces
         ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
         graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(mesh.vertices),) * 2)

@@ -10,6 +10,9 @@ import numpy as np
 
 from harness.arrays import Floats
 
+UNITS = "the median size is about 1, by a power of two"
+"""What the backends that do so say of it."""
+
 
 def unit_of(sizes: Floats) -> float:
     """The power of two nearest to the median size, m; 1 without bodies.

@@ -99,10 +99,15 @@ class Canvas:
         text = re.sub(r"<svg[^>]*>", f"<svg {box}>", text, count=1)
         text = re.sub(r'<g id="[^"]*">', "<g>", text)
         text = re.sub(r"font: [^;\"]*;? ?|font-family: [^;\"]*;? ?| transform=\"rotate\(-0 [^\"]*\"", "", text)
-        text = re.sub(r"(\.\d\d)\d+", r"\1", text)
+        text = re.sub(r"<[^>]+>", _shortened, text)
         text = re.sub(r">\s+<", "><", re.sub(r"\s*\n\s*", " ", text))
         text = re.sub(r"<g>((?:<use [^>]*/>)+)</g>", _styled_once, text)
         return _named(text, name).strip()
+
+
+def _shortened(tag: re.Match[str]) -> str:
+    """Hundredths of px are enough in a tag; what is written between tags stays as it is."""
+    return re.sub(r"(\.\d\d)\d+", r"\1", tag.group(0))
 
 
 def _styled_once(group: re.Match[str]) -> str:

@@ -44,9 +44,9 @@ def _sentence(x: str, metric: str, a: Series, b: Series, crossing: Crossover) ->
     return Markup("From {} <strong>{}</strong>{}{} on, {}.").format(x, number(at.median), interval, where, outcome)
 
 
-def _costs(series: Series, metric: str) -> dict[float, dict[int, float]]:
-    pairs: Sequence[tuple[float, dict[int, float]]] = [
-        (float(x), {repeat: value for repeat, value in cell.by_repeat(metric).items() if value > 0})
+def _costs(series: Series, metric: str) -> dict[float, dict[tuple[int, str], float]]:
+    pairs: Sequence[tuple[float, dict[tuple[int, str], float]]] = [
+        (float(x), {place: value for place, value in cell.by_place(metric).items() if value > 0})
         for cell, x in zip(series.cells, series.x, strict=True)
         if not cell.disagrees
     ]

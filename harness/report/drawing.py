@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal
 
 from matplotlib.ticker import MaxNLocator
 
 from harness.report import palette
 from harness.report.canvas import Canvas
-from harness.report.quantity import number
+from harness.report.quantity import number, power_of_ten
 
 Form = Literal["wide", "narrow", "card"]
 
@@ -30,7 +31,8 @@ _POWERS = {-1: "inverse", 0: "constant", 1: "linear", 2: "square", 3: "cube"}
 class Line:
     """One series in a panel; `low` and `high` bound its band, where it has one.
 
-    A dashed line with hollow markers is somebody else's: published, not measured here.
+    A dashed line with hollow markers is somebody else's: published, not measured here. `spans` are the intervals of x,
+    where it was measured too; `doubtful` are the places of the points that do not count, drawn hollow.
     """
 
     label: str
@@ -40,11 +42,17 @@ class Line:
     low: tuple[float, ...] = ()
     high: tuple[float, ...] = ()
     foreign: bool = False
+    spans: tuple[tuple[float, float], ...] = ()
+    doubtful: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes. With `categories`, x counts them from 0."""
+    """One pair of axes. With `categories`, x counts them from 0.
+
+    `front` are the corners (x, y) of a staircase behind the lines: what no point beats in both x and y. With `rounded`,
+    the ticks of x are round numbers, not the measured ones.
+    """
 
     title: str
     x_label: str
@@ -53,6 +61,8 @@ class Panel:
     categories: tuple[str, ...] = ()
     logarithmic: bool = False
     x_text: Callable[[float], str] = number
+    front: tuple[tuple[float, float], ...] = ()
+    rounded: bool = False
 
 
 @dataclass(frozen=True)
@@ -153,6 +163,8 @@ def _panel(canvas: Canvas, panel: Panel, frame: _Frame, form: Form, labels: bool
     _x_ticks(canvas, frame, _x_texts(panel, frame, form))
     _y_ticks(canvas, frame, 4 if form == "card" else 7)
     canvas.line([frame.left, frame.left, frame.right], [frame.top, frame.bottom, frame.bottom], palette.SOFT, 1.0)
+    if panel.front:
+        _front(canvas, panel, frame)
     for line in panel.lines:
         _line(canvas, panel, line, frame, form)
     if form == "card":
@@ -184,12 +196,26 @@ def _line(canvas: Canvas, panel: Panel, line: Line, frame: _Frame, form: Form) -
     marker = palette.MARKERS[0] if line.foreign else palette.marker(line.style)
     width, size = (1.5, 3.5) if form == "card" else (2.0, 6.0)
     canvas.line(xs, ys, colour, width, dashes, marker, size, line.foreign)
+    for (left, right), y in zip(line.spans, ys if line.spans else (), strict=True):
+        canvas.line([frame.x(left), frame.x(right)], [y, y], colour, 4.0, alpha=0.45)
+    for place in line.doubtful:
+        canvas.line([xs[place]], [ys[place]], colour, 0.0, None, marker, size, True)
+
+
+def _front(canvas: Canvas, panel: Panel, frame: _Frame) -> None:
+    """A broad pale staircase: from a corner on, its error is to be had at every higher cost."""
+    xs, ys = [], []
+    for place, (x, y) in enumerate(panel.front):
+        later = panel.front[place + 1][0] if place + 1 < len(panel.front) else frame.x_range[1]
+        xs += [frame.x(x), frame.x(later)]
+        ys += [frame.y(y), frame.y(y)]
+    canvas.line([xs[0], *xs], [frame.top, *ys], palette.SOFT, 7.0, alpha=0.25)
 
 
 def _x_range(panel: Panel) -> tuple[float, float]:
     if panel.categories:
         return -0.5, len(panel.categories) - 0.5
-    xs = [value for line in panel.lines for value in line.x] or [0.0, 1.0]
+    xs = [value for line in panel.lines for value in (*line.x, *chain(*line.spans))] or [0.0, 1.0]
     low, high = min(xs), max(xs)
     if panel.logarithmic:
         factor = (high / low) ** 0.04 if high > low else 2.0
@@ -216,6 +242,9 @@ def _x_texts(panel: Panel, frame: _Frame, form: Form) -> list[tuple[float, str]]
         step = max(1, math.ceil(7 / room))
         named = enumerate(panel.categories)
         return [(float(place), _shorten(text, room * step - 1)) for place, text in named if place % step == 0]
+    if panel.rounded:
+        room = int((frame.right - frame.left) / (9 * character))
+        return [(value, _tick(value)) for value in _round_numbers(frame.x_range, panel.logarithmic, room)]
     kept: list[tuple[float, str]] = []
     edge = -math.inf
     for value in sorted({value for line in panel.lines for value in line.x}):
@@ -240,7 +269,7 @@ def _x_ticks(canvas: Canvas, frame: _Frame, ticks: Sequence[tuple[float, str]]) 
 
 
 def _y_ticks(canvas: Canvas, frame: _Frame, most: int) -> None:
-    ticks = _y_values(frame, most)
+    ticks = _round_numbers(frame.y_range, frame.logarithmic, most)
     places = [frame.y(value) for value in ticks]
     canvas.line(
         [value for _ in places for value in (frame.left, frame.right, math.nan)],
@@ -252,10 +281,10 @@ def _y_ticks(canvas: Canvas, frame: _Frame, most: int) -> None:
         canvas.text(frame.left - 7, y, _tick(value), horizontal="right", vertical="center")
 
 
-def _y_values(frame: _Frame, most: int) -> list[float]:
-    """Round numbers within the frame: 1, 2, 5 of every power of ten, or fewer of each where that is too many."""
-    low, high = frame.y_range
-    if not frame.logarithmic:
+def _round_numbers(bounds: tuple[float, float], logarithmic: bool, most: int) -> list[float]:
+    """Round numbers within bounds: 1, 2, 5 of every power of ten, or fewer of each where that is too many."""
+    low, high = bounds
+    if not logarithmic:
         found = MaxNLocator(most - 1, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         return [float(value) for value in found if low <= value <= high]
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
@@ -304,7 +333,9 @@ def _share(value: float, bounds: tuple[float, float], logarithmic: bool) -> floa
 
 
 def _tick(value: float) -> str:
-    """A round number of an axis, without the zeros that three significant digits would add."""
+    """A round number of an axis, without the zeros that three significant digits would add; far from 1, its power."""
+    if value > 0.0 and not 1e-3 <= value < 1e6 and math.isclose(power := math.log10(value), round(power)):
+        return power_of_ten(round(power))
     return number(value) if value.is_integer() else f"{value:.4g}".replace("-", "−")
 
 

@@ -11,12 +11,13 @@ from markupsafe import Markup
 
 from harness.measure.noise import told_apart
 from harness.measure.statistics import CONFIDENCE, NOISY_ABOVE, Summary
+from harness.report.criteria import refusals
 from harness.report.crossings import crossing_sentences
 from harness.report.quantity import exponent_text, number, plural, quantity
 from harness.report.ranking import Growth, Ranked, rank, times_worse
 from harness.report.series import Arrangement, Cell, Series
 from harness.report.tables import SLOW_ELAPSED, elapsed_ratio
-from harness.report.words import is_clock, metric_title, metric_unit, more_is_better, setting
+from harness.report.words import SCENE_LEAVES, is_clock, metric_title, metric_unit, more_is_better, scene_text, setting
 from harness.store.records import ExperimentRecord, VerdictRow
 
 _MOST_EXPONENTS = 8
@@ -60,7 +61,9 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
         for row in record.expectations
         if row.verdict != "holds"
     ]
-    return Findings(tuple(sentences), (*failures, *_failed_runs(arrangement)), tuple(_warnings(record, arrangement)))
+    return Findings(
+        tuple(sentences), (*failures, *_failed_runs(record, arrangement)), tuple(_warnings(record, arrangement))
+    )
 
 
 def stability(arrangement: Arrangement) -> str:
@@ -79,6 +82,7 @@ def stability(arrangement: Arrangement) -> str:
 def _fastest(arrangement: Arrangement) -> list[Markup]:
     """Who is ahead at either end of x, in every panel."""
     found = []
+    methods = arrangement.methods
     xs = arrangement.x_values or (None,)
     many = len(arrangement.panels) > 2
     # the far end first: that is where methods part
@@ -86,8 +90,8 @@ def _fastest(arrangement: Arrangement) -> list[Markup]:
     metrics = [metric for metric in arrangement.metrics if is_clock(metric)][: 1 if many else 2]
     for metric in metrics:
         for panel in arrangement.panels:
-            lines = [series for series in arrangement.series if series.panel == panel]
-            for x in ends:
+            lines = [series for series in methods if series.panel == panel]
+            for x in ends if methods is arrangement.series else (None,):
                 ranked = rank(lines, x, metric, arrangement.floor(metric))
                 if len(ranked) > 1:
                     found.append(_lead(arrangement, ranked, panel, x, metric))
@@ -96,19 +100,18 @@ def _fastest(arrangement: Arrangement) -> list[Markup]:
 
 def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
     best, level = ranked[0], [entry for entry in ranked if entry.level]
-    place = ", ".join(part for part in (setting(arrangement.x, x) if arrangement.x else "", panel) if part)
-    where = Markup("At {}: ").format(place) if place else Markup("")
-    extreme = "highest" if more_is_better(metric) else "lowest"
+    where = Markup("For {}: ").format(_scene(arrangement, best.cell, panel, x))
+    most = "highest" if more_is_better(metric) else "lowest"
     value = quantity(best.median, metric_unit(metric))
     if len(level) > 1:
         names = " and ".join(entry.series.label for entry in level)
-        rank_text = "about" if len(level) == len(ranked) else f"the {extreme}, about"
+        rank_text = "about" if len(level) == len(ranked) else f"the {most}, about"
         text = Markup("{}{} cannot be told apart in {}, {} <strong>{}</strong>").format(
             where, names, metric_title(metric), rank_text, value
         )
     else:
         text = Markup("{}<strong>{}</strong> has the {} {}, <strong>{}</strong>").format(
-            where, best.series.label, extreme, metric_title(metric), value
+            where, best.series.label, most, metric_title(metric), value
         )
     behind = [entry for entry in ranked if not entry.level and entry.behind is not None]
     if behind:
@@ -123,6 +126,16 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
         ]
         text += Markup("; that is ") + Markup(", ").join(parts)
     return text + Markup(".")
+
+
+def _scene(arrangement: Arrangement, cell: Cell, panel: str, x: object) -> str:
+    """The scene of a point, and what else of it is swept."""
+    parts = [scene_text(cell.point.parameters)]
+    if arrangement.x and x is not None and arrangement.x not in SCENE_LEAVES:
+        parts.append(setting(arrangement.x, x))
+    if panel and arrangement.panel_leaf not in SCENE_LEAVES:
+        parts.append(panel)
+    return ", ".join(parts)
 
 
 def _change(arrangement: Arrangement) -> list[Markup]:
@@ -214,9 +227,12 @@ def _single(arrangement: Arrangement) -> list[Markup]:
     return [Markup("{}.").format(Markup(", ").join(parts))] if parts else []
 
 
-def _failed_runs(arrangement: Arrangement) -> list[Markup]:
+def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
     ended = Counter(str(status) for cell in arrangement.cells for status in cell.runs["status"])
-    total, good = sum(ended.values()), ended.pop("ok", 0)
+    refused = sum(refusals(record, cell.runs) for cell in arrangement.cells)
+    total, good = sum(ended.values()), ended.pop("ok", 0) + refused
+    ended["rejected"] -= refused
+    ended = +ended
     found = []
     if total > good:
         kinds = ", ".join(f"{number(count)} {status}" for status, count in sorted(ended.items()))

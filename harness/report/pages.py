@@ -19,6 +19,7 @@ from pygments.lexers import YamlLexer
 from harness.measure.conditions import CONDITIONS
 from harness.measure.metrics import METRICS
 from harness.report.contradictions import contradictions
+from harness.report.criteria import refusals
 from harness.report.drawing import Slope
 from harness.report.figures import Figure, exponent_figure, metric_figures, published_figure
 from harness.report.findings import Findings, findings, stability
@@ -175,8 +176,8 @@ class ExperimentPage:
 
     @property
     def failed(self) -> int:
-        """How many runs failed."""
-        return int((self.runs["status"] != "ok").sum())
+        """How many runs failed; those that were refused as expected did not."""
+        return int((self.runs["status"] != "ok").sum()) - refusals(self.record, self.runs)
 
     @property
     def summary(self) -> str:

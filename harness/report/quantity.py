@@ -76,15 +76,20 @@ def number(value: float | None) -> str:
     size = abs(value)
     if size >= 1e15 or 0.0 < size < 1e-4:
         mantissa, exponent = f"{value:.2e}".split("e")
-        return f"{_signed(mantissa)}{THIN}×{THIN}10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+        return f"{_signed(mantissa)}{THIN}×{THIN}{power_of_ten(int(exponent))}"
     if float(value).is_integer():
         return _signed(f"{int(value):,}".replace(",", THIN))
     return _signed(f"{value:,.{_decimals(value)}f}".replace(",", THIN))
 
 
-def plural(count: int, noun: str) -> str:
-    """A count and its noun: "1 run", "50 runs"."""
-    return f"{number(count)}\u00a0{noun}{'' if count == 1 else 's'}"
+def power_of_ten(exponent: int) -> str:
+    """10⁻⁴ for -4."""
+    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"
+
+
+def plural(count: int, noun: str, nouns: str | None = None) -> str:
+    """A count and its noun: "1 run", "50 runs", and of an odd one "2 bodies"."""
+    return f"{number(count)}\u00a0{noun if count == 1 else nouns or noun + 's'}"
 
 
 def exponent_text(value: float) -> str:

@@ -39,13 +39,13 @@ class Growth:
 
 
 def rank(series: Sequence[Series], x: object, metric: str, floor: float) -> list[Ranked]:
-    """The series that have the metric at x, best first; `floor` is the noise floor of the metric.
+    """The series that have the metric at x (None: anywhere), best first; `floor` is the noise floor of the metric.
 
     Left out: runs that disagree with the reference, because a faster answer that is wrong is not faster.
     """
     found = []
     for line in series:
-        cell = line.at(x)
+        cell = line.cells[0] if x is None else line.at(x)
         if cell is not None and math.isfinite(cell.median(metric)) and not cell.disagrees:
             found.append((line, cell, cell.median(metric)))
     found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])

@@ -25,7 +25,7 @@ from harness.store.records import ControlRecord, ExperimentRecord, PointRow
 MOST_IN_A_PANEL = 6
 DEFAULT_METRICS = ("pair_seconds", "box_seconds")
 # What a method is, as against the scene it is put to: panels are split by the scene first.
-_METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
+METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,17 +49,15 @@ class Cell:
         finite: npt.NDArray[np.float64] = values[np.isfinite(values)]
         return finite
 
-    def by_repeat(self, metric: str) -> dict[int, float]:
-        """The metric of every good run that reports it, to be paired with another point's."""
+    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
+        """The metric of every good run that reports it, by repeat and machine.
+
+        To be paired with another point's: times of two machines are not compared.
+        """
         if metric not in self.good.columns:
             return {}
-        pairs = zip(self.good["repeat"], self.good[metric], strict=True)
-        return {int(repeat): float(value) for repeat, value in pairs if math.isfinite(value)}
-
-    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
-        """The same by repeat and machine: times of two machines are not compared."""
-        machines = dict(zip(self.good["repeat"], self.good["machine"], strict=True)) if len(self.good) else {}
-        return {(repeat, str(machines[repeat])): value for repeat, value in self.by_repeat(metric).items()}
+        rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
+        return {(int(repeat), str(machine)): float(value) for repeat, machine, value in rows if math.isfinite(value)}
 
     def summary(self, metric: str) -> Summary | None:
         """Median and interval of the metric, None where no good run reports it."""
@@ -132,6 +130,17 @@ class Arrangement:
         return tuple(dict.fromkeys(series.panel for series in self.series))
 
     @property
+    def methods(self) -> tuple[Series, ...]:
+        """What can be ranked: the series, or, where one series runs over methods, each of its points as one."""
+        if len(self.series) > 1 or self.numeric or self.x not in METHOD:
+            return self.series
+        line = self.series[0]
+        return tuple(
+            Series(setting(self.x, value), place, line.panel, (cell,), (value,))
+            for place, (cell, value) in enumerate(zip(line.cells, line.x, strict=True))
+        )
+
+    @property
     def cells(self) -> list[Cell]:
         """All cells, series by series."""
         return [cell for series in self.series for cell in series.cells]
@@ -198,11 +207,11 @@ def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> 
         return wanted
     numeric = [leaf for leaf in swept if all(_is_number(cell.point.parameters.get(leaf)) for cell in cells)]
     # where no leaf is a number, what the method is tells more as series than along x
-    return next(iter(numeric or [leaf for leaf in swept if leaf not in _METHOD] or swept), None)
+    return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD] or swept), None)
 
 
 def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
-    scene = [leaf for leaf in others if leaf not in _METHOD]
+    scene = [leaf for leaf in others if leaf not in METHOD]
     mixed = 0 < len(scene) < len(others)  # methods are compared on the same scene
     if len(others) < 2 or not (mixed or len({_key(cell, others) for cell in cells}) > MOST_IN_A_PANEL):
         return None
@@ -211,7 +220,7 @@ def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
 
 
 def _scene(point: PointRow) -> dict[str, Any]:
-    return {leaf: value for leaf, value in point.parameters.items() if leaf not in _METHOD}
+    return {leaf: value for leaf, value in point.parameters.items() if leaf not in METHOD}
 
 
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:

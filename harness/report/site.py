@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from markupsafe import Markup
 
 from harness.errors import InputError
 from harness.report import palette
+from harness.report.accuracy import AccuracySection, sections
 from harness.report.comparison import Comparison
 from harness.report.figures import Figure
 from harness.report.pages import (
@@ -31,13 +33,16 @@ from harness.report.pages import (
 )
 from harness.report.published import Row
 from harness.report.quantity import plural
+from harness.report.stability import MEANINGS, SIGNS, Matrix, is_case, matrix
+from harness.report.summary import summary
 from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
 from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
 from harness.store.tables import conditions, controls, experiments, machines, runs
 
-SWEEPS = "sweeps.html"
+SWEEPS, STABILITY, ACCURACY = "sweeps.html", "stability.html", "accuracy.html"
+TITLES = {ACCURACY: "Error against run time", STABILITY: "Stability", SWEEPS: "Sweeps compared"}
 
 
 @dataclass(frozen=True)
@@ -77,6 +82,12 @@ class Listed:
         if self.page.findings.warnings:
             found.append((plural(len(self.page.findings.warnings), "warning"), "noisy"))
         return found
+
+    @property
+    def group(self) -> str:
+        """The folder of experiments it belongs to; "" for one that stands alone."""
+        name = self.page.record.name
+        return name.rpartition("/")[0].replace("/", ", ").replace("-", " ").capitalize()
 
     @property
     def size(self) -> str:
@@ -129,13 +140,23 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     ]
     environment = _environment()
     rows = {page.record.name: page.published for page in pages}
-    claims, compared = any(record.claims for record in records), newest_comparison(database)
+    # claims of the cases of stability stand in their matrix, where they say how far a method falls short
+    claims = any(page.record.claims for page in pages if not is_case(page))
+    compared = newest_comparison(database)
+    accuracy, stability = sections(pages), matrix(pages)
+    present = ((ACCURACY, bool(accuracy)), (STABILITY, stability is not None), (SWEEPS, compared is not None))
+    further = [file for file, there in present if there]
     for page in pages:
         elsewhere = [row for name, found in rows.items() if name != page.record.name for row in found]
-        yield from _experiment(environment, page, elsewhere, claims, compared is not None)
-    yield "index.html", _index(environment, pages, records, compared is not None, machines(database))
+        yield from _experiment(environment, page, elsewhere, claims, further)
+    yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
+    if accuracy:
+        yield from _accuracy(environment, accuracy, claims, further, records)
+    if stability is not None:
+        yield STABILITY, _stability(environment, stability, pages, claims, further)
     if compared is not None:
-        yield SWEEPS, _compared(environment, compared, claims, records)
+        yield SWEEPS, _compared(environment, compared, claims, further, records)
+    yield "findings.md", summary(pages)
     yield "runs.csv", csv(table)
 
 
@@ -155,17 +176,17 @@ def _environment() -> Environment:
     return environment
 
 
-def _navigation(up: str, claims: bool, sweeps: bool, here: Link | None = None) -> list[Link]:
-    """The way through the site; further pages join here."""
+def _navigation(up: str, claims: bool, further: Sequence[str], here: Link | None = None) -> list[Link]:
+    """The way through the site; `further` are the files of the pages that it has beside those of experiments."""
     overview = Link("Overview", f"{up}index.html", here is None)
     titles = ("Experiments", "Claims", "Data") if claims else ("Experiments", "Data")
     places = [Link(title, f"{up}index.html#{title.lower()}") for title in titles]
-    compared = [Link("Sweeps compared", f"{up}{SWEEPS}")] if sweeps and (here is None or here.href != SWEEPS) else []
-    return [overview, *places, *compared, *([here] if here else [])]
+    others = [Link(TITLES[file], f"{up}{file}") for file in further if here is None or here.href != file]
+    return [overview, *places, *others, *([here] if here else [])]
 
 
 def _experiment(
-    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, sweeps: bool
+    environment: Environment, page: ExperimentPage, elsewhere: Sequence[Row], claims: bool, further: Sequence[str]
 ) -> Iterator[tuple[str, str]]:
     published = published_section(page, elsewhere)
     drawn = [*page.figures, page.exponent_figure, published.figure if published else None]
@@ -181,7 +202,7 @@ def _experiment(
     here = Link(page.record.name, "", here=True)
     text = environment.get_template("experiment.html.j2").render(
         title=f"{page.record.title} · harness",
-        navigation=_navigation("../" * len(page.folder.parts), claims, sweeps, here),
+        navigation=_navigation("../" * len(page.folder.parts), claims, further, here),
         page=page,
         published=published,
         verdicts=verdicts,
@@ -219,14 +240,19 @@ def _index(
     environment: Environment,
     pages: Sequence[ExperimentPage],
     records: Sequence[ExperimentRecord],
-    sweeps: bool,
+    further: Sequence[str],
     machines: Mapping[str, Mapping[str, Any]],
+    accuracy: Sequence[AccuracySection],
+    stability: Matrix | None,
 ) -> str:
     listed = []
     for place, page in enumerate(pages):
         # ids are unique on a page, and the overview shows figures of many
         figure = replace(page.figures[0], name=f"card{place}") if page.figures else None
         listed.append(Listed(page, f"{page.folder}/index.html", figure))
+    failures = [(entry, sentence) for entry in listed for sentence in entry.page.findings.failures]
+    cases = [entry for entry in listed if is_case(entry.page)]
+    listed = sorted((entry for entry in listed if entry not in cases), key=lambda entry: entry.group)
     claims: list[tuple[Listed, VerdictRow]] = [(entry, row) for entry in listed for row in entry.page.record.claims]
     used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in pages))
     total, failed = sum(len(page.runs) for page in pages), sum(page.failed for page in pages)
@@ -238,20 +264,74 @@ def _index(
         totals += f" Of {plural(len(claims), 'claim')}, {said}."
     return environment.get_template("index.html.j2").render(
         title="Overview · harness",
-        navigation=_navigation("", bool(claims), sweeps) if pages else [Link("Overview", "", here=True)],
+        navigation=_navigation("", bool(claims), further) if pages else [Link("Overview", "", here=True)],
         pages=listed,
-        failures=[(entry, sentence) for entry in listed for sentence in entry.page.findings.failures],
-        claims=claims,
+        failures=failures,
+        stability=stability,
+        cases=cases,
+        groups=[(group, list(entries)) for group, entries in groupby(listed, key=lambda entry: entry.group)],
+        claims=_by_source(claims),
         machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
         totals=totals,
+        decisions=[(f"{ACCURACY}#{found.identity}", said) for found in accuracy for said in found.decisions],
         footer=_footer(records),
     )
 
 
-def _compared(environment: Environment, found: Comparison, claims: bool, records: Sequence[ExperimentRecord]) -> str:
+def _by_source(claims: Sequence[tuple[Listed, VerdictRow]]) -> list[tuple[str, list[tuple[Listed, VerdictRow]]]]:
+    """Claims under a heading each: those of the homework, whose numbers these are held against, then all others."""
+    homework = [claim for claim in claims if str(claim[1].criterion.get("source", "")).startswith("homework")]
+    others = [claim for claim in claims if claim not in homework]
+    return [(title, found) for title, found in (("Of the homework", homework), ("Of our own", others)) if found]
+
+
+def _stability(
+    environment: Environment, found: Matrix, pages: Sequence[ExperimentPage], claims: bool, further: Sequence[str]
+) -> str:
+    cases = [page for page in pages if is_case(page)]
+    return environment.get_template("stability.html.j2").render(
+        title="Stability · harness",
+        navigation=_navigation("", claims, further, Link(TITLES[STABILITY], STABILITY, here=True)),
+        matrix=found,
+        signs=SIGNS,
+        meanings=MEANINGS,
+        cases=cases,
+        footer=_footer([page.record for page in cases]),
+    )
+
+
+def _accuracy(
+    environment: Environment,
+    found: Sequence[AccuracySection],
+    claims: bool,
+    further: Sequence[str],
+    records: Sequence[ExperimentRecord],
+) -> Iterator[tuple[str, str]]:
+    yield (
+        ACCURACY,
+        environment.get_template("accuracy.html.j2").render(
+            title=f"{TITLES[ACCURACY]} · harness",
+            navigation=_navigation("", claims, further, Link(TITLES[ACCURACY], ACCURACY, here=True)),
+            sections=found,
+            decisions=[said for section in found for said in section.decisions],
+            footer=_footer(records),
+        ),
+    )
+    for section in found:
+        for figure in section.figures:
+            yield figure.file, figure.document
+
+
+def _compared(
+    environment: Environment,
+    found: Comparison,
+    claims: bool,
+    further: Sequence[str],
+    records: Sequence[ExperimentRecord],
+) -> str:
     return environment.get_template("sweeps.html.j2").render(
-        title="Sweeps compared · harness",
-        navigation=_navigation("", claims, True, Link("Sweeps compared", SWEEPS, here=True)),
+        title=f"{TITLES[SWEEPS]} · harness",
+        navigation=_navigation("", claims, further, Link(TITLES[SWEEPS], SWEEPS, here=True)),
         sentences=comparison_summary(found),
         verdicts=found.verdicts,
         points=points_table(found),

@@ -1,9 +1,13 @@
-"""What leaves and metrics are called on the pages."""
+"""What leaves, metrics and scenes are called on the pages."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import PurePosixPath
+from typing import Any
+
 from harness.measure.metrics import METRICS
-from harness.report.quantity import leaf_text
+from harness.report.quantity import leaf_text, number, plural
 
 _LEAVES = {
     "count": "number of bodies",
@@ -50,6 +54,8 @@ _METRICS = {
 }
 # Leaves whose values explain themselves in a label; others are written "leaf value".
 _SELF_EVIDENT = ("backend", "algorithm", "mesh", "response")
+# What `scene_text` says of a scene already.
+SCENE_LEAVES = ("count", "mesh", "faces", "hull_vertices", "shape", "box_ratio", "box", "box_side", "packing")
 
 
 def metric_title(name: str) -> str:
@@ -84,3 +90,16 @@ def setting(leaf: str, value: object) -> str:
 def more_is_better(name: str) -> bool:
     """Whether the larger of two values of the metric wins."""
     return name.removesuffix("_elapsed").endswith("_per_second")
+
+
+def scene_text(parameters: Mapping[str, Any]) -> str:
+    """A scene in a phrase: "40 bodies of pumpkin-1753 (hull) at packing 0.097"."""
+    count = parameters.get("count")
+    bodies = plural(int(count), "body", "bodies") if isinstance(count, int | float) else "bodies"
+    shape, mesh = parameters.get("shape"), parameters.get("mesh")
+    if shape == "sphere":
+        bodies = bodies.replace("bodies", "spheres").replace("body", "sphere")
+    elif mesh:
+        bodies += f" of {PurePosixPath(str(mesh)).stem} ({shape})"
+    packing = parameters.get("packing")
+    return f"{bodies} at packing {number(packing)}" if isinstance(packing, int | float) else bodies

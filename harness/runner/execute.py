@@ -4,38 +4,29 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
+from math import isfinite
 from typing import Any
 
-import numpy as np
-
-from harness.arrays import Floats, Pairs
 from harness.backends import registry
 from harness.backends.protocol import approximations
-from harness.broadphase.grid import Grid
+from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
+from harness.motion.invariance import invariance
 from harness.motion.plan import Plan, make_plan
 from harness.motion.predicted import fly_predicted
-from harness.motion.predictive import simulation
-from harness.motion.response import Response
+from harness.motion.soundness import NotANumberError
 from harness.motion.stepped import fly_stepped
-from harness.narrowphase.containment import Containment
-from harness.narrowphase.gjk import MARGIN
-from harness.narrowphase.hull_pairs import HullPairs
-from harness.narrowphase.mesh_pairs import MeshPairs
-from harness.narrowphase.placement import Places
+from harness.runner import accuracy
 from harness.runner.repetition import fly_long_enough
 from harness.runner.setting import build_scene
-from harness.scene.bodies import Bodies
-from harness.scene.box import Box
-from harness.scene.hull import convex_hull
-from harness.scene.launch import place
+from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -48,7 +39,14 @@ class Result:
     flights: int = 1
 
 
-def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, traced: bool = False) -> Result:
+def execute(
+    point: Point,
+    mesh: Mesh | None,
+    *,
+    memory: int | None = None,
+    traced: bool = False,
+    asked: Collection[str] = (),
+) -> Result:
     """Run a point once, in this process.
 
     Parameters
@@ -57,34 +55,61 @@ def execute(point: Point, mesh: Mesh | None, *, memory: int | None = None, trace
     mesh : the mesh its scene names
     memory : B that the scene may need
     traced : keep every hit
+    asked : metrics that are made on demand alone, and are demanded
 
     Raises
     ------
     PlacementError, SceneSizeError, InputError
         If the point cannot be run as it is declared.
+    NotANumberError
+        If what it came to is not all numbers.
     """
-    warm_up()
+    warm_up(point)
     clock = Clock("setup_seconds")
     scene = build_scene(point, mesh, memory)
     plan = plan_of(point, scene)
-    fly = _flight(point, scene, plan, traced)
+    # what a stepped run watches is outside of its clocks; a predictive one would keep its events within them
+    watched = traced or (point.reference is not None and point.engine.algorithm != "predictive")
+    fly = _flight(point, scene, plan, watched)
     clock.lap("setup_seconds")
     outcome, flights = (fly(), 1) if traced else fly_long_enough(fly)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
-    return Result(metrics, plan, outcome.trace, flights)
+    metrics |= invariance(asked, scene, partial(_hits, point, plan=plan))
+    if point.reference is not None and not traced:
+        metrics |= accuracy.errors(point, mesh, outcome.trace or _hits(point, scene), _hits)
+    _refuse_what_is_no_number(metrics)
+    return Result(metrics, plan, outcome.trace if traced else None, flights)
 
 
-def _flight(point: Point, scene: Scene, plan: Plan, traced: bool) -> Callable[[], Outcome]:
-    """One flight of the scene, from its start, whenever it is called; what it needs is loaded."""
+def _flight(point: Point, scene: Scene, plan: Plan, traced: bool, slower: float = 1.0) -> Callable[[], Outcome]:
+    """One flight of the scene, from its start, whenever it is called; what it needs is loaded.
+
+    `slower` is by how much its duration and its frames are longer than the point says.
+    """
     motion = point.motion
     answers: dict[str, Any] = {"response": motion.response, "restitution": motion.restitution, "traced": traced}
     if point.engine.algorithm == "predictive":
         tolerance = point.engine.tolerance
-        return partial(fly_predicted, scene, plan, duration=motion.duration, tolerance=tolerance, **answers)
+        return partial(fly_predicted, scene, plan, duration=motion.duration * slower, tolerance=tolerance, **answers)
     backend = registry.create(point.engine.backend, point.engine.algorithm) if plan.keeps("pairs") else None
     if backend is not None:
+        if scene.shape not in backend.shapes:
+            raise InputError(f'backend "{backend.name}" has no shape {scene.shape}, only {", ".join(backend.shapes)}')
         backend.load(scene)
-    return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt, **answers)
+    return partial(fly_stepped, scene, plan, backend, frames=motion.frames, dt=motion.dt * slower, **answers)
+
+
+def _hits(point: Point, scene: Scene, slower: float = 1.0, plan: Plan | None = None) -> Trace:
+    """Every hit of a flight of its own, by the method of the point; by default with the scene's own plan."""
+    trace = _flight(point, scene, plan or plan_of(point, scene), traced=True, slower=slower)().trace
+    assert trace is not None, "a traced flight has a trace"
+    return trace
+
+
+def _refuse_what_is_no_number(metrics: Mapping[str, float]) -> None:
+    wrong = [f"{name} is {value}" for name, value in metrics.items() if not isfinite(value)]
+    if wrong:
+        raise NotANumberError(", ".join(wrong))
 
 
 def plan_of(point: Point, scene: Scene) -> Plan:
@@ -106,62 +131,6 @@ def plan_of(point: Point, scene: Scene) -> Plan:
         approximated=approximated,
         forced=point.engine.stages,
     )
-
-
-@cache
-def warm_up() -> None:
-    """Compile every kernel, or load it from numba's cache, so that no clock of a run sees it."""
-    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(12)
-    hull = convex_hull(corners)
-    mesh = Mesh("tetrahedron", hull.vertices, hull.faces, hull, "", watertight=True, convex=True)
-    bodies = Bodies(
-        positions=np.array([[-0.6, 0, 0], [0.6, 0, 0]]),
-        velocities=np.array([[1.0, 1, 1], [-1, -1, -1]]),
-        quaternions=np.tile([1.0, 0, 0, 0], (2, 1)),
-        spins=np.ones((2, 3)),
-        sizes=np.ones(2),
-        masses=np.ones(2),
-    )
-    shapes: tuple[Shape, ...] = ("sphere", "hull")
-    responses: tuple[Response, ...] = ("reflect", "elastic", "none")
-    box = Box(np.full(3, 1.2))
-    simulation.warm_up()
-    place(bodies.radii, box, np.random.default_rng(0), overlap=False)
-    grid = Grid(bodies.radii, box)
-    close = grid.close_pairs(bodies.positions)
-    grid.cells_per_body()
-    placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
-    HullPairs(hull, MARGIN).settle(close, placement)
-    MeshPairs(mesh).settle(close, placement)
-    Containment(mesh).contained(np.array([[0, 1]]), placement)
-    for shape in shapes:
-        scene = Scene(shape, mesh, bodies, box)
-        for response in responses:
-            plan = make_plan(scene, backend="", algorithm="native", response=response)
-            fly_stepped(scene, plan, _Meeting(), frames=2, dt=0.3, response=response)
-    scene = Scene("hull", mesh, bodies, box)
-    fly_predicted(
-        scene,
-        make_plan(scene, backend="fcl", algorithm="predictive", response="reflect"),
-        duration=0.3,
-        response="reflect",
-    )
-
-
-class _Meeting:
-    """A detector for `warm_up`: the two bodies always touch."""
-
-    name = "meeting"
-    shapes: tuple[Shape, ...] = ("sphere", "hull")
-
-    def tolerance(self, shape: Shape) -> float:
-        return 0.0
-
-    def load(self, scene: Scene) -> None:
-        pass
-
-    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
-        return np.array([[0, 1]])
 
 
 def _peak_memory() -> float:

@@ -69,6 +69,6 @@ class Alone:
         """See `Executor`."""
         for job in jobs:
             before(job)
-            task, mesh = task_of(job.experiment, job.point, meshes, pinned=True)
+            task, mesh = task_of(job.experiment, job.point, meshes, pinned=True, asked=job.asked)
             started = datetime.now(timezone.utc)
             yield Done(job, self._servers.run(task, mesh), timing_grade=True, started=started)

@@ -152,7 +152,7 @@ def _reported(task: Task, mesh: Mesh | None) -> bytes:
     memory = Report("memory", f"needed more than {task.memory / 2**30:.3g} GiB")
     try:
         try:
-            result = execute(task.point, mesh, memory=task.memory, traced=task.traced)
+            result = execute(task.point, mesh, memory=task.memory, traced=task.traced, asked=task.asked)
             report = Report("ok", None, result.metrics, result.plan, result.trace, {"flights": result.flights})
         except MemoryError:
             report = memory

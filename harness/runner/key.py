@@ -6,17 +6,20 @@ import hashlib
 import json
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from harness.experiment.experiment import Point
 from harness.scene.mesh import Mesh
 
 
 def point_key(point: Point, mesh: Mesh | None) -> str:
-    """Hash of the resolved scene, motion and engine, the contents of the mesh, and the sources of this package."""
+    """Hash of the resolved scene, motion, engine and reference, the mesh's contents, and this package's sources."""
     parameters = dict(point.parameters)
     parameters["mesh"] = mesh.digest if mesh else None
-    content = json.dumps({"parameters": parameters, "sources": sources_hash()}, sort_keys=True)
-    return hashlib.sha256(content.encode()).hexdigest()
+    content: dict[str, Any] = {"parameters": parameters, "sources": sources_hash()}
+    if point.reference is not None:  # the same run measures more
+        content["reference"] = [point.reference.spec.model_dump(), point.reference.shape]
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 @cache

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-from harness.backends.registry import names
+from harness.backends.registry import missing, names
 from harness.errors import InputError, Problem
 from harness.experiment.experiment import Experiment
 from harness.experiment.load import find_experiments, load
@@ -102,7 +102,13 @@ def _names(experiment: Experiment) -> Iterator[Problem]:
         if name not in METRICS:
             yield experiment.problem(path, f"unknown metric {shown(name)}{near(name, METRICS)}")
     backends = names()
-    for name in dict.fromkeys(point.engine.backend for point in experiment.points):
+    named = list(dict.fromkeys(point.engine.backend for point in experiment.points))
+    for name in named:
         if name not in backends:
             hint = near(name, backends) or f"; there are {listed(backends)}"
             yield experiment.leaf_problem("backend", name, f"unknown backend {shown(name)}{hint}")
+    # of several backends those that are not installed are passed over; without any there is nothing to do
+    lacking = {name: why for name in named if (why := missing(name)) is not None}
+    if named and len(lacking) == len(named):
+        for name, why in lacking.items():
+            yield experiment.leaf_problem("backend", name, why)

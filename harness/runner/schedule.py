@@ -24,13 +24,17 @@ METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to do: a repeat of a point, for the first experiment that lists it; or its control."""
+    """One run to do: a repeat of a point, for the first experiment that lists it; or its control.
+
+    `asked` are the metrics made on demand that any of the experiments names that list it.
+    """
 
     experiment: Experiment
     point: Point
     key: str
     repeat: int
     control: bool = False
+    asked: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A warm server: a process with everything a backend's runs need imported and compiled, which forks once a run.
+"""A warm server: a process with everything that its backend's runs need imported and compiled, which forks once a run.
 
 `python -m harness.runner.server FD BACKEND` is the server; it speaks through the socket FD, which it inherits. Each run
 happens in a process forked from it (`harness.runner.isolation`), so that a backend that crashes, hangs, fills the
@@ -16,8 +16,9 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from harness.backends import registry
-from harness.runner.execute import warm_up
 from harness.runner.isolation import adopt_orphans, die_with_parent, run_isolated
+from harness.runner.task import Task
+from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
 
 
@@ -36,14 +37,11 @@ def main() -> None:
 
 
 def _prepare(channel: Connection, backend: str) -> None:
-    """Compile and import what the runs need, telling the other side how far it is."""
-    warm_up()
-    channel.send("warm")
+    """Import the backend, telling the other side when it begins and when it is done."""
+    channel.send("started")
     if backend in registry.names():
         with suppress(BaseException):  # a run will say it, in its report
             registry.create(backend)
-    gc.collect()
-    gc.freeze()  # so that the collector of a run does not look at, and copy, what the server holds
     channel.send("ready")
     die_with_parent(False)
 
@@ -55,10 +53,20 @@ def _serve(channel: Connection) -> None:
         if isinstance(received, Mesh):
             meshes[received.digest] = received
             continue
+        _warm_up(received)
         report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
         if report is None:
             return
         channel.send(report)
+
+
+def _warm_up(task: Task) -> None:
+    """Compile and import what the run calls, before it is forked and its time counts."""
+    die_with_parent()  # meanwhile nobody sees the socket close
+    if warm_up(task.point):
+        gc.collect()
+        gc.freeze()  # so that the collector of a run does not look at, and copy, what the server holds
+    die_with_parent(False)
 
 
 if __name__ == "__main__":

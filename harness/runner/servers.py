@@ -12,6 +12,7 @@ from pathlib import Path
 from types import TracebackType
 
 from harness.experiment.experiment import Experiment, Point
+from harness.measure.metrics import ON_DEMAND
 from harness.runner.task import Report, Task
 from harness.scene.mesh import Mesh
 
@@ -80,10 +81,20 @@ def task_of(
     *,
     traced: bool = False,
     pinned: bool = False,
+    asked: frozenset[str] | None = None,
 ) -> tuple[Task, Mesh | None]:
-    """A run of a point under the limits of its experiment, and the mesh that it needs."""
+    """A run of a point under the limits of its experiment, and the mesh that it needs.
+
+    `asked` are the metrics to make that are made on demand alone; without, those that the experiment names.
+    """
     mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
-    return Task(point, mesh.digest if mesh else None, limits.timeout, limits.memory, traced, pinned), mesh
+    asked = asked_of(experiment) if asked is None else asked
+    return Task(point, mesh.digest if mesh else None, limits.timeout, limits.memory, traced, pinned, asked), mesh
+
+
+def asked_of(experiment: Experiment) -> frozenset[str]:
+    """The metrics that an experiment names and that are made on demand alone."""
+    return experiment.metrics & ON_DEMAND
 
 
 def mesh_of(experiment: Experiment, point: Point, meshes: Mapping[Path, Mesh]) -> Mesh | None:
@@ -119,7 +130,7 @@ class _Server:
         """
         importing = f'importing backend "{self._backend}"'
         try:
-            self._channel.recv()  # warm: compiling takes as long as it takes
+            self._channel.recv()  # started, which takes as long as it takes
             if not self._channel.poll(timeout):
                 return Report("timeout", f"{importing} did not end within {timeout:g} s")
             self._channel.recv()

@@ -5,25 +5,26 @@ from __future__ import annotations
 import random
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
+from harness.backends.registry import missing
 from harness.errors import InputError
 from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import fingerprint, machine_facts, package_versions, source_commit
 from harness.measure.metrics import METRICS
-from harness.measure.verdicts import judge
+from harness.measure.verdicts import expected_refusals, judge
 from harness.motion.hits import Trace
 from harness.runner.estimate import Estimate
 from harness.runner.executor import Alone, Done, Executor
 from harness.runner.key import point_key
 from harness.runner.schedule import Choice, Job, Schedule, schedule
-from harness.runner.servers import Servers, mesh_of, task_of
+from harness.runner.servers import Servers, asked_of, mesh_of, task_of
 from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
@@ -47,6 +48,8 @@ class Summary:
     experiments : by the name of each experiment, the statuses of its runs of now; a shared run counts for the first
     seconds : by the same names, the elapsed time of these runs
     broken : experiment and statement of every expectation that fails
+    refused : runs that were rejected, as their experiment expects
+    lacking : of every backend that is not installed, and whose points were passed over, why
     """
 
     kept: Counter[str] = field(default_factory=Counter)
@@ -55,12 +58,14 @@ class Summary:
     experiments: dict[str, Counter[str]] = field(default_factory=dict)
     seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     broken: list[tuple[str, str]] = field(default_factory=list)
+    refused: int = 0
+    lacking: list[str] = field(default_factory=list)
 
     @property
     def failed(self) -> bool:
         """Whether a run, now or earlier, or an expectation failed."""
         statuses = self.kept + self.done
-        return statuses.total() > statuses["ok"] or bool(self.broken)
+        return statuses.total() > statuses["ok"] + self.refused or bool(self.broken)
 
 
 class Watcher(Protocol):
@@ -77,11 +82,17 @@ class Watcher(Protocol):
 
 
 class Work(NamedTuple):
-    """What a sweep would do: the key of each point by its id, the runs, and how long they may take."""
+    """What a sweep would do: the key of each point by its id, those wanted, the runs, how long they may take.
+
+    Points whose backend is an extra that is not installed are passed over, and said in `lacking`: of several backends
+    those that there are can be measured, and the next sweep after an installation does the rest.
+    """
 
     keys: dict[int, str]
+    wanted: set[str]
     schedule: Schedule
     estimate: Estimate
+    lacking: list[str]
 
 
 def work_of(
@@ -108,22 +119,32 @@ def work_of(
     """
     keys: dict[int, str] = {}
     parameters: dict[str, dict[str, Any]] = {}
+    asked: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
+    backends = sorted({point.engine.backend for experiment in experiments for point in experiment.points})
+    lacking = {name: why for name in backends if (why := missing(name)) is not None}
     for experiment in experiments:
         for point in experiment.points:
             mesh = mesh_of(experiment, point, meshes)
             key = keys[id(point)] = point_key(point, mesh)
             parameters[key] = _parameters(point, mesh)
+            asked[key] |= asked_of(experiment)
     wanted = {key for key, found in parameters.items() if choice.wants(found)}
     if choice.only and parameters and not wanted:
         raise InputError("--only: no point of these experiments has these values")
+    wanted = {key for key in wanted if parameters[key]["backend"] not in lacking}
     if history is None:
         status: dict[str, dict[int, str]] = {key: {} for key in parameters}
         controlled: set[tuple[str, int]] = set()
     else:
         sweeps = history.broken_off(command) if choice.fresh else None
         status, controlled = history.done(parameters, sweeps), history.controlled(parameters, sweeps)
+        for key, repeat in history.without(asked):
+            status[key].pop(repeat, None)
     found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=choice.retry)
-    return Work(keys, found, Estimate(history.durations() if history else {}, parameters))
+    jobs = [job if job.control else replace(job, asked=asked[job.key]) for job in found.jobs]
+    found = found._replace(jobs=jobs)
+    estimate = Estimate(history.durations() if history else {}, parameters)
+    return Work(keys, wanted, found, estimate, list(lacking.values()))
 
 
 def sweep(
@@ -158,7 +179,7 @@ def sweep(
     machine["fingerprint"] = fingerprint(machine)
     number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions())
     listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
-    summary = Summary(work.schedule.kept)
+    summary = Summary(work.schedule.kept, lacking=work.lacking)
     watch.begin(work.schedule.jobs, work.estimate)
     with executor or Alone() as doing:
         for done in doing.run(work.schedule.jobs, meshes, watch.before):
@@ -166,6 +187,7 @@ def sweep(
             _count(summary, done)
             work.estimate.learn(done.job, done.report.conditions.get("seconds", 0.0))
             watch.after(done.job, done.report)
+    refused: set[tuple[str, int]] = set()
     for experiment in experiments:
         table = runs(database.path, [experiment.name])
         expectations = [_verdict(criterion, table, experiment, "expectation") for criterion in experiment.expect]
@@ -173,6 +195,8 @@ def sweep(
         database.add_verdicts(number, listed[experiment.name], "expectation", expectations)
         database.add_verdicts(number, listed[experiment.name], "claim", claims)
         summary.broken += [(experiment.name, row.statement) for row in expectations if row.verdict == "fails"]
+        refused |= expected_refusals(experiment.expect, table[table["point"].isin(work.wanted)])
+    summary.refused = len(refused)
     database.finish_sweep(number)
     return summary
 

@@ -25,6 +25,7 @@ class Task:
     memory : B that it may use
     traced : keep every hit
     pinned : keep it on one core, where the system allows
+    asked : metrics to make that are made on demand alone
     """
 
     point: Point
@@ -33,6 +34,7 @@ class Task:
     memory: int
     traced: bool = False
     pinned: bool = False
+    asked: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from harness.errors import InputError
 
@@ -51,6 +50,8 @@ def convex_hull(points: NDArray[np.float64]) -> Hull:
     InputError
         If the points are too few or too flat to enclose a volume.
     """
+    from scipy.spatial import ConvexHull, QhullError  # half a second, which a run whose mesh is at hand need not spend
+
     # Qt: facets with more than three corners come as triangles. Where that leaves a seam (it can where many
     # points are collinear), QJ moves the points by some 1e-11 of the extent for the search alone.
     for options in ("Qt", "QJ"):

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
-from scipy.spatial import cKDTree
 
 STEPS = 1000
 # Spheres are pushed this much further apart, of their radii, than they must be: overlaps end before the very minimum.
@@ -30,6 +28,8 @@ def relaxed(radii: NDArray[np.float64], half: NDArray[np.float64], rng: np.rando
     (n, 3) float array, m
         The spheres are inside the box. Some may still overlap: ask `overlapping`.
     """
+    from scipy.optimize import minimize  # a fifth of a second, which most scenes need not spend
+
     unit = float(radii.mean())
     inner = np.maximum(half - radii[:, None], 0) / unit
     start = (2 * rng.random(inner.shape) - 1) * inner
@@ -50,6 +50,8 @@ def overlapping(positions: NDArray[np.float64], radii: NDArray[np.float64]) -> N
 
     Spheres are sorted into classes of radii within a factor of 2, so that a few large ones do not make all pairs close.
     """
+    from scipy.spatial import cKDTree
+
     if len(radii) == 0:
         return np.empty((0, 2), np.int64)
     classes = np.floor(np.log2(radii.max() / radii)).astype(int)

@@ -16,7 +16,7 @@ from pathlib import Path
 from harness.errors import InputError
 
 APPLICATION_ID = 0x68726E73  # "hrns", in the file's header
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 BUSY_SECONDS = 10.0
 
 # What SQLite says (Python 3.10 has no error codes), and what a person should hear.

@@ -234,6 +234,17 @@ class Database:
                 ),
             )
 
+    def add_comparison(
+        self, command: str, experiment: str, backends: tuple[str, str], key: str, document: Mapping[str, Any]
+    ) -> None:
+        """Keep what was found of two backends on the poses of an experiment, which need not have been swept."""
+        with self._transaction() as connection:
+            connection.execute(
+                "INSERT INTO comparison (experiment, first, second, made, command, key, document) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?)",
+                (experiment, *backends, _now(), _text(command), key, _json(document)),
+            )
+
     @contextmanager
     def _transaction(self) -> Iterator[sqlite3.Connection]:
         connection = self._connection

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -53,6 +53,20 @@ class History:
             )
             return set(rows)
 
+    def without(self, metrics: Mapping[str, Collection[str]]) -> list[tuple[str, int]]:
+        """The keys and repeats whose newest run ended well without all of the metrics that are asked of its key."""
+        wanted = {key: set(names) for key, names in metrics.items() if names}
+        found: dict[tuple[str, int], set[str]] = {}
+        with told(self._path):
+            for key, repeat, name in self._connection.execute(
+                "SELECT key, repeat, name FROM current_run JOIN point ON point.id = current_run.point "
+                "LEFT JOIN metric ON metric.run = current_run.id "
+                "WHERE status = 'ok' AND key IN (SELECT value FROM json_each(?))",
+                (json.dumps(list(wanted)),),
+            ):
+                found.setdefault((key, repeat), set()).add(name)
+        return [(key, repeat) for (key, repeat), names in found.items() if wanted[key] - names]
+
     def broken_off(self, command: str) -> list[int]:
         """The newest sweeps, as far as all of them had this command line and did not come to their end."""
         with told(self._path):
@@ -62,6 +76,11 @@ class History:
                 (command,),
             )
             return [number for (number,) in rows]
+
+    def compared(self) -> set[str]:
+        """The keys of all comparisons of backends."""
+        with told(self._path):
+            return {key for (key,) in self._connection.execute("SELECT DISTINCT key FROM comparison")}
 
     def durations(self) -> dict[str, float]:
         """Mean elapsed seconds of a run, by the key of its point, and by its parameters as sorted JSON text.

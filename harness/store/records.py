@@ -90,3 +90,14 @@ class ControlRecord:
     repeat: int
     machine: str
     metrics: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class ComparisonRecord:
+    """What was found last of two backends on the poses of an experiment."""
+
+    experiment: str
+    backends: tuple[str, str]
+    made: str
+    command: str
+    document: Mapping[str, Any]

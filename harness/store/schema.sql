@@ -119,5 +119,17 @@ CREATE TABLE claim (
     PRIMARY KEY (experiment, sweep, place)
 );
 
+-- What `harness compare`, or a sweep, found of two backends on the poses of an experiment; the newest of each two counts.
+CREATE TABLE comparison (
+    id         INTEGER PRIMARY KEY,
+    experiment TEXT NOT NULL,               -- its name; it need not have been swept
+    first      TEXT NOT NULL,
+    second     TEXT NOT NULL,               -- the backends
+    made       TEXT NOT NULL,               -- ISO 8601, UTC
+    command    TEXT NOT NULL,
+    key        TEXT NOT NULL,               -- hash of all that it depends on
+    document   TEXT NOT NULL                -- JSON: as `--json` prints it, and the cases as a page shows them
+);
+
 CREATE VIEW current_run AS
     SELECT * FROM run WHERE id IN (SELECT max(id) FROM run GROUP BY point, repeat);

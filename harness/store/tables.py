@@ -17,6 +17,7 @@ import pandas as pd
 
 from harness.store.history import reading
 from harness.store.records import (
+    ComparisonRecord,
     ControlRecord,
     ExperimentRecord,
     PointRow,
@@ -168,6 +169,20 @@ def machines(path: str | Path) -> dict[str, dict[str, Any]]:
     with reading(path) as connection:
         rows = connection.execute("SELECT fingerprint, facts FROM machine ORDER BY id").fetchall()
     return {fingerprint: json.loads(facts) for fingerprint, facts in rows}
+
+
+def comparisons(path: str | Path) -> list[ComparisonRecord]:
+    """The newest comparison of every two backends on every experiment, by name."""
+    with reading(path) as connection:
+        rows = connection.execute(
+            "SELECT experiment, first, second, made, command, document FROM comparison "
+            "WHERE id IN (SELECT max(id) FROM comparison GROUP BY experiment, first, second) "
+            "ORDER BY experiment, first, second"
+        ).fetchall()
+    return [
+        ComparisonRecord(name, (first, second), made, command, json.loads(text))
+        for name, first, second, made, command, text in rows
+    ]
 
 
 def _names(connection: sqlite3.Connection) -> list[str]:

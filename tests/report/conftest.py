@@ -94,6 +94,7 @@ class Invented:
     question: str | None = None
     report: Mapping[str, Any] | None = None
     published: Mapping[str, Any] | None = None
+    reference: Mapping[str, Any] | None = None
     claims: Sequence[VerdictRow] = ()
     expectations: Sequence[VerdictRow] = ()
     fate: Callable[[Mapping[str, Any], int, dict[str, float]], tuple[str, str] | None] = lambda *_: None
@@ -121,7 +122,7 @@ def write(path: Path, experiments: Sequence[Invented]) -> Path:
                 "expect": [], "claims": [], "published": invented.published, "report": invented.report,
                 "swept": [leaf for leaf in invented.swept if leaf != "zip"]
                 + list((invented.swept.get("zip") or [{}])[0]),
-                "measure": {"repeats": invented.repeats},
+                "measure": {"repeats": invented.repeats, "reference": invented.reference},
             }  # fmt: skip
             points = [
                 PointRow(f"{invented.name}-{place}", point, {"stages": STAGES, "warnings": invented.warnings(point)})

@@ -12,7 +12,7 @@ def series(label, exponent, factor, box=1.0):
     cells = []
     for count in (10, 20, 40, 80):
         costs = [factor * count**exponent] * 5
-        runs = pd.DataFrame({"repeat": range(5), "status": "ok", "run_seconds": costs})
+        runs = pd.DataFrame({"repeat": range(5), "status": "ok", "machine": "m", "run_seconds": costs})
         cells.append(Cell(PointRow(f"{label}{count}", {"count": count, "algorithm": label, "box_ratio": box}), runs))
     return Series(label, 0, "", tuple(cells), (10, 20, 40, 80))
 

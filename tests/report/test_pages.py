@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+from html import unescape
 from html.parser import HTMLParser
 
 import pytest
@@ -57,7 +58,7 @@ class Outline(HTMLParser):
 
 
 def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
-    links = re.findall(r'<h3><a href="([^"]+)"', pages["index.html"])
+    links = re.findall(r'<h4><a href="([^"]+)"', pages["index.html"])
     assert len(links) == len(experiments(database))
     assert set(links) <= pages.keys()
 
@@ -245,7 +246,7 @@ def test_the_fastest_is_named_with_how_far_it_is_ahead(report_of):
 
     swept = {"count": [10, 40, 160], "backend": ["fcl", "pybullet"]}
     text = text_of(page(report_of(swept=swept, fate=slower), "x"))
-    found = re.search(r"At count 160: fcl has the lowest .*?that is (\S+)× \[(\S+), (\S+)\] ahead", text)
+    found = re.search(r"For 160\sbodies[^:]*: fcl has the lowest .*?that is (\S+)× \[(\S+), (\S+)\] ahead", text)
     ratio, low, high = found.groups()
     assert float(low) <= float(ratio) <= float(high)
     assert 3.5 < float(ratio) < 4.5
@@ -271,3 +272,11 @@ def test_frames_per_second_rank_the_other_way_round(report_of):
 def test_a_metric_that_no_run_reports_is_said(report_of):
     html = page(report_of(report={"y": ["position_error", "pair_seconds"]}), "x")
     assert "No run reports position_error" in html
+
+
+def test_the_findings_come_as_markdown_with_a_row_an_experiment(database, pages):
+    rows = [line for line in pages["findings.md"].splitlines() if line.startswith("| ")][1:]
+    titles = [unescape(row.split(" | ")[0].removeprefix("| ")) for row in rows]
+    assert titles == [row.title for row in experiments(database)]
+    assert all(row.count(" | ") == 2 for row in rows)
+    assert not re.search(r"</?(?!sup)\w+>", pages["findings.md"])

@@ -1,6 +1,7 @@
 """A run that goes wrong costs itself only, and its row says what happened."""
 
 import os
+import textwrap
 import time
 
 import psutil
@@ -8,39 +9,58 @@ import pytest
 
 from harness.measure.conditions import CONDITIONS
 from harness.runner.servers import Servers, task_of
+from tests.runner.conftest import install_plugin
+
+# A backend that goes wrong in another way with every number of bodies: what it does, and what is told of it.
+WAYS = {
+    2: ("ctypes.string_at(0)", "crashed", "signal 11 (SIGSEGV)"),
+    3: ("os.abort()", "crashed", "signal 6 (SIGABRT)"),
+    4: ("os._exit(3)", "crashed", "exit code 3"),
+    5: ("raise RuntimeError('no luck')", "failed", "RuntimeError: no luck"),
+    6: ("sys.exit(4)", "failed", "SystemExit: 4"),
+    7: ("time.sleep(60)", "timeout", "did not end within 1 s"),
+    8: ("block = bytearray(8 << 30)", "memory", "needed more than 1 GiB"),
+    9: ("os.kill(os.getpid(), 9)", "memory", "killed by the system"),
+}
+
+# And what it does besides, seen by tests of their own.
+LOUD, SCRIBBLES, TELLS = 10, 11, 12
+BESIDES = {
+    LOUD: "print('garbage ' * 3); os.write(2, b'more'); raise ValueError('stop')",
+    SCRIBBLES: "for n in range(3, 64):\n    try: os.write(n, b'garbage' * 9)\n    except OSError: pass",
+    TELLS: "raise ValueError(f\"{len(os.sched_getaffinity(0))} core, {os.environ['OMP_NUM_THREADS']} thread\")",
+}
+ROOMY = [10, 10, 10]
 
 
 def run_one(experiment, servers):
     return servers.run(*task_of(experiment, experiment.points[0], {}))
 
 
-@pytest.mark.parametrize(
-    ("body", "status", "reason"),
-    [
-        ("ctypes.string_at(0)", "crashed", "signal 11 (SIGSEGV)"),
-        ("os.abort()", "crashed", "signal 6 (SIGABRT)"),
-        ("os._exit(3)", "crashed", "exit code 3"),
-        ("raise RuntimeError('no luck')", "failed", "RuntimeError: no luck"),
-        ("sys.exit(4)", "failed", "SystemExit: 4"),
-        ("time.sleep(60)", "timeout", "did not end within 1 s"),
-        ("block = bytearray(8 << 30)", "memory", "needed more than 1 GiB"),
-        ("os.kill(os.getpid(), 9)", "memory", "killed by the system"),
-    ],
-)
-def test_each_way_to_go_wrong_has_its_status(spheres, plugin, body, status, reason):
-    plugin("bad", body)
-    experiment = spheres(backend="bad", algorithm="native", timeout=1 if status == "timeout" else 20, memory="1GiB")
-    with Servers() as servers:
-        report = run_one(experiment, servers)
-        assert report.status == status, report
-        assert reason in report.reason
-        assert run_one(spheres(), servers).status == "ok"
+@pytest.fixture(scope="module")
+def servers(tmp_path_factory):
+    """Servers of several tests, with the backend that goes wrong in all these ways."""
+    doings = {count: does for count, (does, *_) in WAYS.items()} | BESIDES
+    body = "\n".join(f"if len(positions) == {n}:\n{textwrap.indent(does, '    ')}" for n, does in doings.items())
+    with pytest.MonkeyPatch.context() as patch, Servers() as opened:
+        install_plugin(tmp_path_factory.mktemp("ways"), patch, "bad", body)
+        yield opened
 
 
-def test_what_a_backend_prints_goes_to_its_row_and_nowhere_else(spheres, plugin, capfd):
-    plugin("loud", "print('garbage ' * 3); os.write(2, b'more'); raise ValueError('stop')")
-    with Servers() as servers:
-        report = run_one(spheres(backend="loud", algorithm="native"), servers)
+@pytest.mark.parametrize("count", WAYS)
+def test_each_way_to_go_wrong_has_its_status(spheres, servers, count):
+    _, status, reason = WAYS[count]
+    timeout = 1 if status == "timeout" else 20
+    experiment = spheres(backend="bad", algorithm="native", count=count, box=ROOMY, timeout=timeout, memory="1GiB")
+    report = run_one(experiment, servers)
+    assert report.status == status, report
+    assert reason in report.reason
+    assert run_one(spheres(), servers).status == "ok"
+    assert run_one(spheres(backend="bad", algorithm="native", count=20, box=ROOMY), servers).status == "ok"
+
+
+def test_what_a_backend_prints_goes_to_its_row_and_nowhere_else(spheres, servers, capfd):
+    report = run_one(spheres(backend="bad", algorithm="native", count=LOUD, box=ROOMY), servers)
     assert "more" in report.stderr
     assert "ValueError: stop" in report.stderr
     assert capfd.readouterr() == ("", "")
@@ -74,14 +94,10 @@ def test_everything_a_run_started_ends_with_it(spheres, plugin, tmp_path, hiding
         assert ended(int(note.read_text()))
 
 
-def test_what_a_backend_writes_into_any_file_it_holds_harms_nobody_else(spheres, plugin):
-    plugin(
-        "scribbles", "for number in range(3, 64):\n    try: os.write(number, b'garbage' * 9)\n    except OSError: pass"
-    )
-    with Servers() as servers:
-        report = run_one(spheres(backend="scribbles", algorithm="native"), servers)
-        assert (report.status, report.reason) == ("crashed", "its report was garbage")
-        assert run_one(spheres(), servers).status == "ok"
+def test_what_a_backend_writes_into_any_file_it_holds_harms_nobody_else(spheres, servers):
+    report = run_one(spheres(backend="bad", algorithm="native", count=SCRIBBLES, box=ROOMY), servers)
+    assert (report.status, report.reason) == ("crashed", "its report was garbage")
+    assert run_one(spheres(), servers).status == "ok"
 
 
 @pytest.mark.parametrize(
@@ -107,20 +123,15 @@ def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(spheres, plug
         assert run_one(spheres(), servers).status == "ok"
 
 
-def test_a_run_has_one_thread_and_one_core(spheres, plugin):
-    plugin(
-        "tells", "raise ValueError(f\"{len(os.sched_getaffinity(0))} core, {os.environ['OMP_NUM_THREADS']} thread\")"
-    )
-    experiment = spheres(backend="tells", algorithm="native")
-    with Servers() as servers:
-        report = servers.run(*task_of(experiment, experiment.points[0], {}, pinned=True))
+def test_a_run_has_one_thread_and_one_core(spheres, servers):
+    experiment = spheres(backend="bad", algorithm="native", count=TELLS, box=ROOMY)
+    report = servers.run(*task_of(experiment, experiment.points[0], {}, pinned=True))
     assert report.reason == "ValueError: 1 core, 1 thread"
     assert report.conditions["core"] in os.sched_getaffinity(0)
 
 
-def test_what_a_run_met_is_told(spheres):
-    with Servers() as servers:
-        report = run_one(spheres(), servers)
+def test_what_a_run_met_is_told(spheres, servers):
+    report = run_one(spheres(), servers)
     assert {"load", "seconds", "flights"} <= report.conditions.keys() <= CONDITIONS.keys()
     assert 0.0 < report.conditions["seconds"] < 20.0
 
@@ -149,15 +160,13 @@ def test_leaving_the_servers_ends_them(spheres):
         os.kill(process, 0)
 
 
-def test_a_placement_that_cannot_fit_is_rejected_with_the_numbers(spheres):
-    with Servers() as servers:
-        report = run_one(spheres(count=500), servers)
+def test_a_placement_that_cannot_fit_is_rejected_with_the_numbers(spheres, servers):
+    report = run_one(spheres(count=500), servers)
     assert report.status == "rejected"
     assert "overlap" in report.reason
 
 
-def test_a_scene_beyond_the_memory_is_refused_before_anything_is_allocated(spheres):
-    with Servers() as servers:
-        report = run_one(spheres(count=10**9), servers)
+def test_a_scene_beyond_the_memory_is_refused_before_anything_is_allocated(spheres, servers):
+    report = run_one(spheres(count=10**9), servers)
     assert report.status == "rejected"
     assert "GiB" in report.reason

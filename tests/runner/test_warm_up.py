@@ -6,7 +6,8 @@ import pickle
 import pytest
 from numba.core.dispatcher import Dispatcher
 
-from harness.runner.execute import execute, warm_up
+from harness.runner.execute import execute
+from harness.runner.warm_up import pieces, warm_up
 from harness.scene.mesh_file import make_mesh
 from tests.conftest import cube_mesh
 
@@ -24,10 +25,9 @@ def compiled():
 @pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
 @pytest.mark.parametrize("record", [False, True])
 def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
-    warm_up()
-    execute(spheres(response=response).points[0], None)
-    before = compiled()
     point = spheres(response=response, count=12, algorithm="predictive").points[0]
+    warm_up(point)
+    before = compiled()
     execute(point, None, traced=record)
     assert compiled() == before
 
@@ -38,11 +38,19 @@ def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
     ("count", "algorithm"), [(1, "brute-force"), (12, "brute-force"), (12, "grid"), (12, "predictive")]
 )
 def test_after_the_warm_up_nothing_is_compiled(spheres, shape, response, count, algorithm):
-    warm_up()
     cube = cube_mesh()
     mesh = pickle.loads(pickle.dumps(make_mesh("cube", cube.vertices, cube.faces)))  # as it reaches a server
-    before = compiled()
     point = spheres(response=response, count=count, algorithm=algorithm).points[0]
     point = point.__class__(point.scene.model_copy(update={"shape": shape}), point.motion, point.engine)
+    warm_up(point)
+    before = compiled()
     execute(point, mesh)
     assert compiled() == before
+
+
+def test_a_run_waits_only_for_what_it_calls(spheres):
+    assert not warm_up(spheres().points[0]) or not warm_up(spheres().points[0])  # once a process
+    few, more = set(pieces("brute-force", "sphere")), set(pieces("grid", "mesh"))
+    assert few < set(pieces("grid", "sphere"))
+    assert len(more - few) > len(few)
+    assert set(pieces("tree", "mesh")) < set(pieces("tree", "mesh", forced=True)) >= more

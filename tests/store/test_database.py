@@ -7,6 +7,7 @@ import os
 import sqlite3
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
@@ -369,7 +370,9 @@ def read_only(path: Path) -> Path:
     """A database with one listing, in a folder that nobody may write to."""
     with Database.open(path) as database:
         listed(database, begin(database), GRID)
-    for folder in (path.parent, *path.parent.parents[:2]):
+    for folder in path.parents:
+        if folder == Path(tempfile.gettempdir()):
+            break
         folder.chmod(0o755)
     path.chmod(0o444)
     path.parent.chmod(0o555)

@@ -58,10 +58,11 @@ SKIN = 0.65
 # A pair hit this soon after another, in the time a mean sphere flies its radius, is part of one lasting contact (TC
 # model).
 CONTACT = 1e-6
-# What a stalled sphere waits, in the same unit, and how many hits in no time make it stall (elastic ones come to an
-# end).
+# What a stalled sphere waits, in the same unit, and how many hits in no time make it stall. Elastic ones come to an end
+# and may be many; but in a crystal without room each sphere would take that many, so they are shared among all.
 PAUSE = 1e-3
 BURST = {NONE: 1000, REFLECT: 1000, ELASTIC: 1_000_000}
+BURST_LEAST = 100
 # Events to one re-basing of time, for each sphere and for each run; with response none every sphere must look again
 # then.
 SPAN, SPAN_NONE, SPAN_LEAST = 16, 64, 64
@@ -157,7 +158,7 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
         contact_time=CONTACT * instant,
         blink=CONTACT * instant if answer == REFLECT else 0.0,
         pause=PAUSE * instant,
-        burst=BURST[answer],
+        burst=max(BURST[answer] // max(n, 1), BURST_LEAST) if answer == ELASTIC else BURST[answer],
         touching=TOUCHING * float(start.half_box.max()),
         span=SPAN_LEAST + (SPAN_NONE if answer == NONE else SPAN) * n,
         crowded=n >= MULTITUDE[method],

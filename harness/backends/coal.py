@@ -1,0 +1,109 @@
+"""coal, the successor of hpp-fcl: spheres, convex hulls and meshes, found through its dynamic tree."""
+
+from __future__ import annotations
+
+import coal
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from harness.arrays import Floats, Pairs
+from harness.narrowphase.units import UNITS, unit_of
+from harness.scene.mesh import Surface
+from harness.scene.scene import Scene, Shape
+
+# coal's own 1e-6 leaves more verdicts to chance
+_GJK_TOLERANCE = 1e-12
+
+
+class Coal:
+    """Hulls and spheres go through the tree at once; meshes where the tree sees their bounding spheres touch."""
+
+    name = "coal"
+    shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    units = UNITS
+    precision = "double"
+
+    def tolerance(self, shape: Shape) -> float:
+        """Measured against exact rationals: hulls and triangles up to 1e-6 apart are called hits."""
+        return 1e-15 if shape == "sphere" else 1e-5
+
+    def load(self, scene: Scene) -> None:
+        self._request = coal.CollisionRequest()
+        self._request.gjk_tolerance = _GJK_TOLERANCE
+        self._unit = unit_of(scene.bodies.sizes)
+        sizes = (scene.bodies.sizes / self._unit).tolist()
+        count = len(sizes)
+        self._meshes: list[coal.CollisionObject] = []
+        if scene.shape == "mesh":
+            models = {size: _model(_solid(scene, size, self._unit)) for size in dict.fromkeys(sizes)}
+            self._meshes = [coal.CollisionObject(models[size], coal.Transform3s()) for size in sizes]
+        convex = _hull if scene.shape == "hull" else _sphere
+        self._objects = []
+        for body, size in enumerate(sizes):
+            geometry = convex(scene, size, self._unit)
+            # a contact names geometries as new objects, which are known again by this number alone
+            geometry.cost_density = float(body)
+            self._objects.append(coal.CollisionObject(geometry, coal.Transform3s()))
+        self._tree = coal.DynamicAABBTreeCollisionManager()
+        for held in self._objects:
+            self._tree.registerObject(held)
+        self._tree.setup()
+        self._every_pair = max(1, count * (count - 1) // 2)
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        if not (np.isfinite(positions).all() and np.isfinite(quaternions).all()):
+            raise ValueError("a pose is not finite")
+        places, turns = positions / self._unit, Rotation.from_quat(quaternions[:, [1, 2, 3, 0]]).as_matrix()
+        _place(self._objects, places, turns)
+        self._tree.update()
+        callback = coal.CollisionCallBackDefault()
+        callback.data.request.num_max_contacts = self._every_pair
+        callback.data.request.gjk_tolerance = _GJK_TOLERANCE
+        self._tree.collide(callback)
+        found = callback.data.result.getContacts()
+        touching = {tuple(sorted((int(one.o1.cost_density), int(one.o2.cost_density)))) for one in found}
+        if self._meshes:
+            _place(self._meshes, places, turns)
+            touching = {pair for pair in touching if self._meshes_touch(*pair)}
+        return np.array(sorted(touching), np.int64).reshape(-1, 2)
+
+    def _meshes_touch(self, i: int, j: int) -> bool:
+        return bool(coal.collide(self._meshes[i], self._meshes[j], self._request, coal.CollisionResult()))
+
+
+def _place(objects: list[coal.CollisionObject], places: Floats, turns: Floats) -> None:
+    for held, place, turn in zip(objects, places, turns, strict=True):
+        held.setRotation(turn)
+        held.setTranslation(place)
+        held.computeAABB()
+
+
+def _solid(scene: Scene, size: float, unit: float) -> Surface:
+    solid = scene.solid_of(size * unit)
+    return Surface(solid.vertices / unit, solid.faces)
+
+
+def _sphere(scene: Scene, size: float, unit: float) -> coal.Sphere:
+    return coal.Sphere(size / 2)
+
+
+def _hull(scene: Scene, size: float, unit: float) -> coal.Convex:
+    vertices, faces = _lists(_solid(scene, size, unit))
+    return coal.Convex(vertices, faces)
+
+
+def _model(solid: Surface) -> coal.BVHModelOBBRSS:
+    model = coal.BVHModelOBBRSS()
+    model.beginModel(len(solid.faces), len(solid.vertices))
+    model.addSubModel(*_lists(solid))
+    model.endModel()
+    return model
+
+
+def _lists(solid: Surface) -> tuple[coal.StdVec_Vec3s, coal.StdVec_Triangle]:
+    vertices, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    for vertex in solid.vertices:
+        vertices.append(vertex)
+    for face in solid.faces.tolist():
+        faces.append(coal.Triangle(*face))
+    return vertices, faces

@@ -1,0 +1,153 @@
+"""Experiments as poses to compare backends at, and what is kept of it; for `compare`, and for `sweep`.
+
+`compare` asks about every frame and every hard pose. A sweep asks, of an experiment with `measure: {compare: on}`,
+about as many frames of each scene as make 100 000 verdicts (two at least), and about every twelfth hard pose.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+from harness.backends.registry import missing
+from harness.compare.comparison import compare
+from harness.compare.document import Reduced, document, reduced, shown_case
+from harness.compare.flight import fly_both
+from harness.compare.hard import hard_poses
+from harness.compare.outcome import Comparison
+from harness.compare.poses import PoseSet, flown
+from harness.errors import InputError
+from harness.experiment.experiment import Experiment, Point
+from harness.measure.machine import package_versions
+from harness.runner.key import point_key
+from harness.runner.servers import mesh_of
+from harness.runner.setting import SceneSizeError, build_scene
+from harness.scene.launch import PlacementError
+from harness.scene.mesh import Mesh
+from harness.scene.scene import Scene
+
+DEFAULT = ("fcl", "pybullet")
+
+Meshes = Mapping[Path, Mesh]
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How much is asked.
+
+    Parameters
+    ----------
+    verdicts : of a scene as it flies, about; None for every frame
+    every : ask about every so manieth hard pose
+    flown : frames of a flight with hits, at the most; None for all
+    cases : wrong verdicts of one backend to make smaller
+    """
+
+    verdicts: int | None
+    every: int
+    flown: int | None
+    cases: int
+
+    def frames(self, point: Point, bodies: int) -> int:
+        """The last frame of a scene to ask about."""
+        if self.verdicts is None:
+            return point.motion.frames
+        return min(point.motion.frames, max(1, self.verdicts // (bodies * (bodies - 1) // 2)))
+
+
+WHOLE = Extent(verdicts=None, every=1, flown=None, cases=5)
+SWEPT = Extent(verdicts=100_000, every=12, flown=600, cases=2)
+
+
+def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[tuple[str, ...], list[str]]:
+    """The backends to compare: those chosen, else those the experiment names, else the default; and what is missing.
+
+    Raises
+    ------
+    InputError
+        If one was chosen that is not installed, or fewer than two are left.
+    """
+    named = tuple(dict.fromkeys(point.engine.backend for point in experiment.points))
+    wanted = chosen or (named if len(named) > 1 else DEFAULT)
+    lacking = {name: why for name in wanted if (why := missing(name)) is not None}
+    if chosen and lacking:
+        raise InputError("\n".join(lacking.values()))
+    left = tuple(name for name in wanted if name not in lacking)
+    if len(left) < 2:
+        raise InputError(f"{experiment.path}: nothing to compare; {'; '.join(lacking.values())}")
+    return left, list(lacking.values())
+
+
+def cross_check(
+    experiment: Experiment,
+    meshes: Meshes,
+    names: tuple[str, ...],
+    extent: Extent,
+    progress: Callable[[str], None] = lambda line: None,
+) -> Iterator[tuple[tuple[str, str], Comparison]]:
+    """Every two backends with what was found of them."""
+    for pair in combinations(names, 2):
+        found = compare(_settings(experiment, meshes, extent), pair, progress)
+        free = next((point for point in experiment.points if point.motion.response != "none"), None)
+        if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
+            motion = free.motion
+            frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
+            progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
+            found.add(
+                fly_both(
+                    scene, pair, frames=frames, dt=motion.dt, response=motion.response, restitution=motion.restitution
+                )
+            )
+        yield pair, found
+
+
+def reductions(found: Comparison, meshes: Meshes, extent: Extent) -> list[Reduced]:
+    """The cases of a comparison, the first ones made smaller."""
+    names = {id(mesh): path.name for path, mesh in meshes.items()}
+    return reduced(found, names, extent.cases)
+
+
+def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:
+    """What the database keeps of a comparison of two backends."""
+    return document(found, rows, {}) | {
+        "title": experiment.title,
+        "shown": [shown_case(row) for row in rows if row.tried],
+        "versions": package_versions(),
+    }
+
+
+def key_of(experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent) -> str:
+    """Of two comparisons with the same key the second would find nothing new."""
+    points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
+    content = json.dumps([points, pair, repr(extent), package_versions()])
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+def _settings(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterator[PoseSet]:
+    """What the experiment's points fly through, each scene once; then the hard poses of every shape of a mesh."""
+    seen = set()
+    for point in experiment.points:
+        moved = repr((point.scene, point.motion.duration, point.motion.dt))
+        if moved in seen:
+            continue
+        seen.add(moved)
+        scene = _scene(experiment, point, meshes)
+        if scene is not None:
+            yield flown(scene, extent.frames(point, len(scene.bodies)), point.motion.dt)
+    random = {(point.scene.shape, point.scene.mesh): point for point in experiment.points if point.scene.bodies is None}
+    for (shape, _), point in random.items():
+        yield from hard_poses(shape, mesh_of(experiment, point, meshes), extent.every)
+
+
+def _scene(experiment: Experiment, point: Point, meshes: Meshes) -> Scene | None:
+    """The scene of a point; None where there is no pair."""
+    try:
+        scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
+    except (PlacementError, SceneSizeError) as error:
+        raise InputError(f"{experiment.path}: {error}") from error
+    return scene if len(scene.bodies) > 1 else None

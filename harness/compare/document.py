@@ -1,0 +1,142 @@
+"""What a comparison has found, as JSON holds it: for `--json`, and for the database."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from harness.compare.minimise import minimise
+from harness.compare.outcome import Case, Comparison, Failure
+from harness.compare.reproduction import text_of
+from harness.compare.section import section
+from harness.compare.tally import Approximation, Counts, GapAxis
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """A case, and what was made of it.
+
+    Parameters
+    ----------
+    small : the smallest scene that shows it; None where it depends on what was asked before
+    mesh : name of the mesh's file
+    tried : whether it was tried to make it smaller
+    """
+
+    case: Case
+    small: Case | None
+    mesh: str | None
+    tried: bool = True
+
+    @property
+    def text(self) -> str | None:
+        """The experiment that shows it by itself."""
+        return None if self.small is None else text_of(self.small, self.mesh)
+
+    @property
+    def name(self) -> str:
+        """Of a file for it, without number and suffix."""
+        return "-".join(self.case.backends)
+
+
+def reduced(found: Comparison, mesh_name: dict[int, str], most: int) -> list[Reduced]:
+    """Every wrong verdict, those that both backends share last; the first few of every backend made smaller.
+
+    Parameters
+    ----------
+    found : Comparison
+    mesh_name : the file of a mesh, by id(mesh)
+    most : cases of one backend to make smaller: more of them show the same defect again
+    """
+    tried: dict[str, int] = {}
+    rows = []
+    for case in found.cases + found.shared:
+        tried[case.wrong] = tried.get(case.wrong, 0) + 1
+        now = tried[case.wrong] <= most
+        rows.append(Reduced(case, minimise(case) if now else None, mesh_name.get(id(case.scene.mesh)), now))
+    return rows
+
+
+def document(found: Comparison, rows: list[Reduced], files: dict[int, str]) -> dict[str, Any]:
+    """The document that `harness compare --json` prints.
+
+    Parameters
+    ----------
+    found : Comparison
+    rows : of its cases
+    files : the file that a case was written to, by its place
+    """
+    cases = [case_row(row, files.get(place)) for place, row in enumerate(rows)]
+    real = len(found.cases)
+    return {
+        "pairs": [_counts(tally) for tally in found.tallies],
+        "cases": cases[:real] + [failure_row(failure) for failure in found.failures],
+        "shared": cases[real:],
+        "checked": [_counts(checked) for checked in found.checked],
+        "approximations": [_approximation(one) for one in found.approximations],
+        "gaps": [_gaps(axis) for axis in found.gaps],
+        "flights": [asdict(flight) for flight in found.flights],
+        "unsupported": found.unsupported,
+    }
+
+
+def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
+    """A wrong verdict; `depends_on_order` tells one that a single question does not show, and `frame` where it was."""
+    case = row.case
+    where = {"pose": case.pose.name, "call": case.call, "touching": case.judgement.touching}
+    return {
+        "backends": list(case.backends),
+        "wrong": case.wrong,
+        "bodies": list(case.bodies),
+        "gap": case.judgement.gap,
+        "certificate": case.judgement.certificate | where,
+        "file": file,
+        "minimised_to": None if row.small is None else len(row.small.scene.bodies),
+        "depends_on_order": row.tried and row.small is None,
+    }
+
+
+def failure_row(failure: Failure) -> dict[str, Any]:
+    """A crash has no bodies, no gap and no proof but its reason."""
+    return {
+        "backends": list(failure.backends),
+        "wrong": failure.backend,
+        "bodies": [],
+        "gap": None,
+        "certificate": {"kind": "crashed", "pose": failure.pose, "call": failure.call, "reason": failure.reason},
+        "file": None,
+    }
+
+
+def shown_case(row: Reduced) -> dict[str, Any]:
+    """A case with all that a page needs to show it: the smaller one's proof, picture and file, where there is one."""
+    best = row.small or row.case
+    i, j = best.bodies
+    sizes = best.scene.bodies.sizes
+    small = None if row.small is None else {
+        "bodies": list(best.bodies),
+        "gap": best.judgement.gap,
+        "certificate": best.judgement.certificate | {"touching": best.judgement.touching},
+    }  # fmt: skip
+    return case_row(row, None) | {
+        "shape": best.scene.shape,
+        "sizes": [float(sizes[i]), float(sizes[j])],
+        "section": section(best),
+        "minimised": small,
+        "text": row.text,
+        "mesh": row.mesh,
+    }
+
+
+def _counts(counts: Counts) -> dict[str, Any]:
+    return {**asdict(counts), "backends": list(counts.backends)}
+
+
+def _approximation(one: Approximation) -> dict[str, Any]:
+    return _counts(one) | {"false_share": one.false_share, "missed_share": one.missed_share}
+
+
+def _gaps(axis: GapAxis) -> dict[str, Any]:
+    return _counts(axis) | {
+        "counts": {kind: dict(sorted(decades.items())) for kind, decades in sorted(axis.counts.items())}
+    }

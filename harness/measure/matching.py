@@ -1,0 +1,160 @@
+"""Which reported hit is which contact of the reference: one to one, and in order.
+
+A hit belongs to the encounter of its pair (see `harness.measure.contacts`) in whose time it falls; a hit outside of
+every encounter of its pair is extra. Within an encounter the hits and the contacts, both in the order of time, are
+matched one to one so that
+
+1. no hit is a report of a contact that had ended before it, and the order is kept;
+2. as many as possible are matched;
+3. the sum of the time differences |hit - onset| is the smallest possible.
+
+A hit may come before the onset: where the method sees a larger shape than the reference, or touches at a tolerance. A
+contact without a hit is missed, a hit without a contact extra. So a contact between two frames is missed, two contacts
+that a frame-by-frame look takes for one are one match and one miss, and a contact reported twice is one match and one
+extra. What touches at time 0 has no onset: it may be reported or not, and counts neither way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from harness.arrays import Floats, Ints, Pairs
+from harness.kernel import kernel
+from harness.measure.contacts import Contacts
+
+# Times of two methods that differ by so little, of the duration or of the encounter, differ by rounding.
+ROUNDING, SHARE = 1e-13, 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Matching:
+    """What became of the reference's hits, and of the reported ones.
+
+    Parameters
+    ----------
+    hits : number of the reference's hits: contacts that begin while the method watches
+    missed : of these, those without a report
+    extra : reports without a contact
+    errors : (k,) float array, s: reported time - onset, of the matched hits in the order of the contacts
+    """
+
+    hits: int
+    missed: int
+    extra: int
+    errors: Floats
+
+    @property
+    def missed_share(self) -> float:
+        """Missed hits, as a fraction of the reference's hits; 0 where it has none."""
+        return self.missed / max(1, self.hits)
+
+    @property
+    def extra_share(self) -> float:
+        """Extra hits, as a fraction of the reference's hits, or of one where it has none."""
+        return self.extra / max(1, self.hits)
+
+
+def match(contacts: Contacts, times: Floats, pairs: Pairs, until: float) -> Matching:
+    """Match the hits that a method reports with the contacts of the reference.
+
+    Parameters
+    ----------
+    contacts : of the reference
+    times : (h,) float array, s; when a hit was reported
+    pairs : (h, 2) int array, i < j; between whom
+    until : s; how long the method watched. Contacts that begin later, and hits after the reference's end, do not count.
+    """
+    seen = times <= contacts.duration * (1.0 + ROUNDING)
+    times, pairs = times[seen], pairs[seen]
+    order = np.lexsort((times, pairs[:, 1], pairs[:, 0]))
+    times, pairs = times[order], pairs[order]
+    slack = ROUNDING * contacts.duration
+    margins = slack + SHARE * (contacts.end - contacts.begin)
+    home = np.full(len(times), -1, np.int64)
+    _assign(contacts.pairs, contacts.begin - margins, contacts.end + margins, pairs, times, home)
+    settled, partner = np.flatnonzero(home >= 0), np.full(len(contacts), -1, np.int64)
+    _match(contacts.encounter, contacts.onset, contacts.release + slack, home[settled], times[settled], partner)
+    matched = partner >= 0
+    counted = contacts.begins(until)
+    reported = times[settled][partner[counted & matched]]
+    return Matching(
+        hits=int(np.count_nonzero(counted)),
+        missed=int(np.count_nonzero(counted & ~matched)),
+        extra=len(times) - int(np.count_nonzero(matched)),
+        errors=reported - contacts.onset[counted & matched],
+    )
+
+
+@kernel
+def _assign(whose: Pairs, begin: Floats, end: Floats, pairs: Pairs, times: Floats, home: Ints) -> None:
+    """The encounter of each hit, or -1. Encounters and hits are sorted by pair and time."""
+    e = 0
+    for h in range(len(times)):
+        i, j = pairs[h]
+        while e < len(begin) and (
+            whose[e, 0] < i or (whose[e, 0] == i and (whose[e, 1] < j or (whose[e, 1] == j and end[e] < times[h])))
+        ):
+            e += 1
+        if e < len(begin) and whose[e, 0] == i and whose[e, 1] == j and begin[e] <= times[h]:
+            home[h] = e
+
+
+@kernel
+def _match(encounter: Ints, onset: Floats, release: Floats, home: Ints, times: Floats, partner: Ints) -> None:
+    """Encounter by encounter; `partner` becomes the hit of each contact, or stays -1. All hits have a home."""
+    c = 0
+    h = 0
+    while c < len(onset):
+        of = encounter[c]
+        next_c = c
+        while next_c < len(onset) and encounter[next_c] == of:
+            next_c += 1
+        while h < len(times) and home[h] < of:
+            h += 1
+        next_h = h
+        while next_h < len(times) and home[next_h] == of:
+            next_h += 1
+        if next_h > h:
+            _match_one(onset[c:next_c], release[c:next_c], times[h:next_h], h, partner[c:next_c])
+        c, h = next_c, next_h
+
+
+@kernel
+def _match_one(onset: Floats, release: Floats, times: Floats, first: int, partner: Ints) -> None:
+    """The best matching of one encounter, from those of its first contacts and hits (dynamic programming)."""
+    m, n = len(onset), len(times)
+    matches = np.zeros((m + 1, n + 1), np.int64)
+    cost = np.zeros((m + 1, n + 1))
+    for a in range(1, m + 1):
+        for b in range(1, n + 1):
+            most, least = matches[a - 1, b], cost[a - 1, b]
+            if _better(matches[a, b - 1], cost[a, b - 1], most, least):
+                most, least = matches[a, b - 1], cost[a, b - 1]
+            together = cost[a - 1, b - 1] + _difference(onset[a - 1], release[a - 1], times[b - 1])
+            if together < inf and _better(matches[a - 1, b - 1] + 1, together, most, least):
+                most, least = matches[a - 1, b - 1] + 1, together
+            matches[a, b], cost[a, b] = most, least
+    a, b = m, n
+    while a > 0 and b > 0:
+        if matches[a, b] == matches[a - 1, b] and cost[a, b] == cost[a - 1, b]:
+            a -= 1
+        elif matches[a, b] == matches[a, b - 1] and cost[a, b] == cost[a, b - 1]:
+            b -= 1
+        else:
+            a -= 1
+            b -= 1
+            partner[a] = first + b
+
+
+@kernel
+def _better(matches: int, cost: float, than_matches: int, than_cost: float) -> bool:
+    return matches > than_matches or (matches == than_matches and cost < than_cost)
+
+
+@kernel
+def _difference(onset: float, release: float, time: float) -> float:
+    """How far a report is from the onset, or inf where the contact had ended before."""
+    return abs(time - onset) if time <= release else inf

@@ -1,0 +1,43 @@
+"""The findings as Markdown, for a README or a merge request."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from markupsafe import escape
+
+from harness.report.pages import ExperimentPage, machine_text
+
+
+def summary(pages: Sequence[ExperimentPage]) -> str:
+    """A table with a row an experiment: its title, what was found, and what became of its claims.
+
+    Machine, versions and command of the newest sweep stand above it.
+    """
+    if not pages:
+        return "There are no results yet.\n"
+    newest = max((page.record.sweep for page in pages), key=lambda sweep: sweep.id)
+    head = (
+        f"Measured by `{newest.command}` (harness {newest.version}, {newest.started[:10]}) "
+        f"on {machine_text(newest.machine)}."
+    )
+    rows = ["| experiment | what was found | claims |", "|---|---|---|"]
+    rows += [f"| {_cell(page.record.title)} | {_cell(page.findings.answer)} | {_claims(page)} |" for page in pages]
+    return "\n".join([head, "", *rows]) + "\n"
+
+
+def _claims(page: ExperimentPage) -> str:
+    verdicts = [row.verdict for row in page.record.claims]
+    words = (("holds", "hold"), ("fails", "fail"), ("undecided", "undecided"))
+    return ", ".join(
+        f"{verdicts.count(verdict)} {verdict if verdicts.count(verdict) == 1 else plural}"
+        for verdict, plural in words
+        if verdict in verdicts
+    )
+
+
+def _cell(text: str) -> str:
+    """Text or markup of a page as an entry of a Markdown table; Markdown has no raised text of its own."""
+    kept = re.sub(r"<(?!/?sup>)[^>]+>", "", re.sub(r"</?strong>", "**", str(escape(text))))
+    return kept.replace("|", "\\|").replace("\n", " ")

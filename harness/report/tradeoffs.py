@@ -1,0 +1,197 @@
+"""Error against run time: what each method costs at each setting of its knob, how far it is right, and who leads.
+
+A *method* is a combination of backend, algorithm and shape; its knob is the time step or, of a predictive one, the
+tolerance. A *scene* is all the rest. Errors below the checked error of the reference mean no more than that.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from harness.measure.noise import told_apart
+from harness.measure.statistics import Exponent, Summary, fit_exponent
+from harness.report.ranking import times_worse
+from harness.report.series import METHOD, Arrangement, Cell
+from harness.report.words import setting
+from harness.store.records import ExperimentRecord
+
+COST, ERROR = "run_seconds", "time_error"
+# Of the reference's hits, how many a method may miss, and how many more it may report, to count as right.
+MOST_WRONG = 0.01
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+# At which of these a sentence says what to use, if anything reaches it.
+PREFERRED = 1e-4
+_KNOBS = ("dt", "tolerance")
+FEWEST_SETTINGS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A method at one setting of its knob."""
+
+    cell: Cell
+    knob: float
+    cost: Summary
+    error: float
+    trust: float
+
+    @property
+    def wrong(self) -> float:
+        """The larger of the shares of missed and of extra hits; 0 where hits are not matched."""
+        return max(
+            (share for name in ("missed_hits", "extra_hits") if (share := self.cell.median(name)) > 0), default=0
+        )
+
+    @property
+    def sound(self) -> bool:
+        """Whether it sees the hits that there are, so that its error is one of all of them."""
+        return self.wrong <= MOST_WRONG
+
+    @property
+    def shown(self) -> float:
+        """Its error, or the reference's where it is smaller: more cannot be told."""
+        return max(self.error, self.trust)
+
+    def reaches(self, target: float) -> bool:
+        """Whether it counts as right to within the target."""
+        return self.sound and self.error <= target
+
+
+@dataclass(frozen=True, eq=False)
+class Method:
+    """A method with its settings, the cheapest first; `knob` is "" where it has none, because it is exact."""
+
+    label: str
+    style: int
+    knob: str
+    settings: tuple[Setting, ...]
+
+    def cheapest(self, target: float) -> Setting | None:
+        """Its cheapest setting that reaches an error."""
+        return next((found for found in self.settings if found.reaches(target)), None)
+
+    @property
+    def order(self) -> Exponent | None:
+        """The power of the time step with which the error falls; None of methods without one."""
+        if self.knob != "dt":
+            return None
+        fit = fit_exponent({found.knob: [found.error] for found in self.settings if found.sound})
+        return fit if fit.n >= 2 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Tradeoff:
+    """All methods on one scene of one experiment; `place` tells the scene from the others of the experiment."""
+
+    record: ExperimentRecord
+    place: str
+    methods: tuple[Method, ...]
+    floor: float
+
+    @property
+    def settings(self) -> list[tuple[Method, Setting]]:
+        """Every method at every setting."""
+        return [(method, found) for method in self.methods for found in method.settings]
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether there is something to draw: a method at several settings."""
+        return any(len(method.settings) >= FEWEST_SETTINGS for method in self.methods)
+
+    @property
+    def front(self) -> list[Setting]:
+        """The settings that no other beats in both cost and error, the cheapest first: the Pareto front."""
+        best, found = math.inf, []
+        for candidate in sorted((s for _, s in self.settings if s.sound), key=lambda s: (s.cost.median, s.shown)):
+            if candidate.shown < best:
+                best = candidate.shown
+                found.append(candidate)
+        return found
+
+    def ranked(self, target: float) -> list[tuple[Method, Setting]]:
+        """The methods that reach an error, each at its cheapest setting, the cheapest method first."""
+        found = [(method, cheapest) for method in self.methods if (cheapest := method.cheapest(target)) is not None]
+        return sorted(found, key=lambda entry: entry[1].cost.median)
+
+    def lead(self, target: float) -> list[tuple[Method, Setting, Summary | None]]:
+        """The same, each with how many times it costs what the first costs."""
+        ranked = self.ranked(target)
+        return [
+            (method, found, None if place == 0 else times_worse(found.cell, ranked[0][1].cell, COST))
+            for place, (method, found) in enumerate(ranked)
+        ]
+
+    def level(self, behind: Summary | None) -> bool:
+        """Whether a ratio to the first cannot be told from 1."""
+        return behind is None or not told_apart(behind, self.floor)
+
+    @property
+    def decided(self) -> float | None:
+        """The error at which to say what to use: the preferred one, else the smallest that anything reaches."""
+        reached = [target for target in TARGETS if self.ranked(target)]
+        return PREFERRED if PREFERRED in reached else min(reached, default=None)
+
+
+def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeoff]:
+    """The trade-offs of an experiment that declares a reference, one a scene; none of any other."""
+    if not (record.specification.get("measure") or {}).get("reference"):
+        return []
+    scenes: dict[str, list[Cell]] = {}
+    for cell in arrangement.cells:
+        scenes.setdefault(_key(cell, lambda leaf: leaf not in METHOD and leaf not in _FOLLOWS), []).append(cell)
+    leaves = _differing([cells[0] for cells in scenes.values()], lambda leaf: leaf not in METHOD)
+    found = []
+    for cells in scenes.values():
+        methods = _methods(cells)
+        if methods:
+            place = ", ".join(setting(leaf, cells[0].point.parameters.get(leaf)) for leaf in leaves)
+            found.append(Tradeoff(record, place, methods, arrangement.floor(COST)))
+    return found
+
+
+# What follows from the mesh and the box: it tells no scenes apart that these do not.
+_FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
+
+
+def _methods(cells: Sequence[Cell]) -> tuple[Method, ...]:
+    grouped: dict[str, list[Cell]] = {}
+    for cell in cells:
+        grouped.setdefault(_key(cell, lambda leaf: leaf in METHOD and leaf not in _KNOBS), []).append(cell)
+    leaves = _differing(
+        [members[0] for members in grouped.values()], lambda leaf: leaf in METHOD and leaf not in _KNOBS
+    )
+    made: list[Method] = []
+    for members in grouped.values():
+        first = members[0].point.parameters
+        knob = "dt" if first.get("algorithm") != "predictive" else "" if first.get("shape") == "sphere" else "tolerance"
+        settings = [found for cell in members if (found := _setting(cell, knob or "tolerance")) is not None]
+        label = "\u00a0· ".join(setting(leaf, first.get(leaf)) for leaf in leaves) or str(first.get("algorithm"))
+        if settings:
+            ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
+            made.append(Method(label, len(made), knob, ordered))
+    return tuple(made)
+
+
+def _setting(cell: Cell, knob: str) -> Setting | None:
+    cost, error = cell.summary(COST), cell.median(ERROR)
+    if cost is None or not math.isfinite(error) or not cost.median > 0:
+        return None
+    trust = cell.median("reference_error")
+    return Setting(cell, float(cell.point.parameters[knob]), cost, error, trust if math.isfinite(trust) else 0.0)
+
+
+def _differing(cells: Sequence[Cell], wanted: Any) -> list[str]:
+    leaves = [leaf for leaf in cells[0].point.parameters if wanted(leaf) and leaf not in _FOLLOWS] if cells else []
+    return [leaf for leaf in leaves if len({_text(cell, leaf) for cell in cells}) > 1]
+
+
+def _key(cell: Cell, wanted: Any) -> str:
+    return json.dumps({leaf: value for leaf, value in cell.point.parameters.items() if wanted(leaf)}, sort_keys=True)
+
+
+def _text(cell: Cell, leaf: str) -> str:
+    return json.dumps(cell.point.parameters.get(leaf), sort_keys=True)

@@ -1,0 +1,72 @@
+"""What the README tells people to type works as it stands there."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from harness.backends.fcl import Fcl
+from harness.backends.protocol import Backend
+from harness.cli.main import COMMANDS, main
+from harness.experiment.load import load_text
+from harness.runner.setting import build_scene
+
+README = Path(__file__).parents[1] / "README.md"
+
+
+def blocks(heading: str, language: str = "") -> list[str]:
+    """The fenced blocks below a heading."""
+    section = README.read_text(encoding="utf-8").split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
+    return re.findall(rf"^```{language}\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
+
+
+def commands(text: str) -> list[list[str]]:
+    """Every `harness` command of a text, without what it says after a hash."""
+    lines = [line.split("#", 1)[0] for line in text.splitlines()]
+    return [
+        shlex.split(part)[1:] for line in lines for part in line.split("&&") if re.match(r"\s*(\S*/)?harness ", part)
+    ]
+
+
+def test_every_command_named_exists():
+    spoken = re.findall(r"`harness (\w+)", README.read_text(encoding="utf-8"))
+    typed = [words[0] for fence in re.findall(r"^```\n(.*?)^```", README.read_text(encoding="utf-8"), re.M | re.S)
+             for words in commands(fence)]  # fmt: skip
+    assert spoken
+    assert typed
+    assert set(spoken + typed) <= COMMANDS.keys()
+
+
+def test_an_experiment_is_added_as_it_says(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    *before, sweep, _ = commands(blocks("Add an experiment")[0])
+    assert [words[0] for words in before] == ["new", "validate", "plan"]
+    assert [main(words) for words in before] == [0, 0, 0]
+    assert main([*sweep, "--dry-run"]) == 0
+
+
+def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
+    namespace: dict[str, object] = {}
+    exec(blocks("Add a backend", "python")[0], namespace)
+    mine, fcl = namespace["Mine"](), Fcl("brute-force")
+    assert isinstance(mine, Backend)
+    text = "title: t\nscene: {shape: sphere, count: 40, box: [4, 4, 4], overlap: allow}\n"
+    scene = build_scene(load_text(text, "readme.yaml").points[0], None)
+    for backend in (mine, fcl):
+        backend.load(scene)
+    found = [backend.pairs(scene.bodies.positions, scene.bodies.quaternions) for backend in (mine, fcl)]
+    assert len(found[0]) > 10
+    np.testing.assert_array_equal(*found)
+
+
+@pytest.mark.parametrize("block", blocks("From Python", "python"))
+def test_the_lines_for_python_run(block, monkeypatch):
+    monkeypatch.chdir(README.parent)
+    small = block.replace("count=[5, 10]", "count=[5], repeats=1, duration=0.2")
+    assert small != block
+    namespace: dict[str, object] = {}
+    exec(small, namespace)
+    assert len(namespace["table"]) == 3
+    assert (np.diff(namespace["events"].times) >= 0).all()
