@@ -15,6 +15,8 @@ _SAME = 1e-9  # relative: numbers of a file and of a run that mean the same
 
 def matching(table: pd.DataFrame, where: Mapping[str, Any]) -> pd.DataFrame:
     """The rows whose leaves have these values, or one of these where there is a list."""
+    if not where:
+        return table
     mask = np.ones(len(table), dtype=bool)
     for leaf, wanted in where.items():
         mask &= [_is(value, wanted) for value in table[leaf]] if leaf in table else False

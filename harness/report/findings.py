@@ -118,9 +118,7 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
         chosen = dict.fromkeys((behind[0].series.label, behind[-1].series.label))
         said = [entry for entry in behind if entry.series.label in chosen]
         parts = [
-            Markup("<strong>{}</strong> {} ahead of {}").format(
-                _times(entry.behind), _interval(entry.behind), entry.series.label
-            )
+            Markup("{} ahead of {}").format(_times(entry.behind), entry.series.label)
             for entry in said
             if entry.behind is not None
         ]
@@ -160,7 +158,7 @@ def _change(arrangement: Arrangement) -> list[Markup]:
             quantity(first.median(metric), metric_unit(metric)),
             quantity(last.median(metric), metric_unit(metric)),
         )
-        how = Markup("<strong>{}</strong> {}").format(_times(ratio), _interval(ratio))
+        how = _times(ratio)
         apart = told_apart(ratio, arrangement.floor(metric) if is_clock(metric) else 0.0)
         told = Markup("") if apart else Markup(", not to be told from no change")
         found.append(text + Markup(": {}{}.").format(how, told))
@@ -304,16 +302,13 @@ def _warnings(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup
     return found
 
 
-def _interval(ratio: Summary | None) -> str:
-    """The interval in brackets; a range, where it is only that, says so."""
-    if ratio is None or ratio.n < 2:
-        return ""
-    text = f"[{number(ratio.low)}, {number(ratio.high)}]"
-    return text if ratio.coverage is not None else f"{text} (range)"
-
-
-def _times(ratio: Summary | None) -> str:
-    return f"{number(ratio.median)}×" if ratio else ""
+def _times(ratio: Summary) -> Markup:
+    """A ratio with its interval in brackets; a range, where it is only that, says so, and one pair has neither."""
+    text = Markup("<strong>{}×</strong>").format(number(ratio.median))
+    if ratio.n < 2:
+        return text
+    kind = "" if ratio.coverage is not None else " (range)"
+    return text + Markup(" [{}, {}]{}").format(number(ratio.low), number(ratio.high), kind)
 
 
 def _full(series: Series) -> str:

@@ -43,11 +43,11 @@ class Cell:
 
     def values(self, metric: str) -> npt.NDArray[np.float64]:
         """The metric of every good run that reports it, by repeat."""
-        if metric not in self.good.columns:
-            return np.empty(0)
-        values = np.asarray(self.good[metric], dtype=float)
-        finite: npt.NDArray[np.float64] = values[np.isfinite(values)]
-        return finite
+        if metric not in self._values:
+            column = self.good[metric] if metric in self.good.columns else ()
+            values = np.asarray(column, dtype=float)
+            self._values[metric] = values[np.isfinite(values)]
+        return self._values[metric]
 
     def by_place(self, metric: str) -> dict[tuple[int, str], float]:
         """The metric of every good run that reports it, by repeat and machine.
@@ -75,6 +75,10 @@ class Cell:
     def disagrees(self) -> bool:
         """Whether a run's hits differ from the reference's: such a point is shown, and never ranked."""
         return any(bool((self.values(metric) > 0).any()) for metric in ("missed_hits", "extra_hits"))
+
+    @cached_property
+    def _values(self) -> dict[str, npt.NDArray[np.float64]]:
+        return {}
 
     @cached_property
     def _summaries(self) -> dict[str, Summary | None]:

@@ -6,11 +6,9 @@ The same results give the same bytes.
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.resources import files
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +20,7 @@ from harness.report import palette
 from harness.report.accuracy import AccuracySection, sections
 from harness.report.backends import BackendsPage
 from harness.report.comparison import Comparison
-from harness.report.figures import Figure
+from harness.report.overview import Overview
 from harness.report.pages import (
     ExperimentPage,
     csv,
@@ -33,14 +31,13 @@ from harness.report.pages import (
     verdict_groups,
 )
 from harness.report.published import Row
-from harness.report.quantity import plural
 from harness.report.replay import Replay, replay_of
 from harness.report.stability import MEANINGS, SIGNS, Matrix, is_case, matrix
 from harness.report.summary import summary
 from harness.report.sweeps import facts as sweep_facts
 from harness.report.sweeps import newest_comparison, points_table
 from harness.report.sweeps import summary as comparison_summary
-from harness.store.records import ExperimentRecord, SweepRecord, VerdictRow
+from harness.store.records import ExperimentRecord, SweepRecord
 from harness.store.tables import comparisons, conditions, controls, experiments, machines, runs
 
 SWEEPS, STABILITY, ACCURACY = "sweeps.html", "stability.html", "accuracy.html"
@@ -55,47 +52,6 @@ class Link:
     title: str
     href: str
     here: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class Listed:
-    """An experiment as the overview lists it."""
-
-    page: ExperimentPage
-    href: str
-    figure: Figure | None
-
-    @property
-    def axis(self) -> str:
-        """What the small figure shows: of several panels, the first."""
-        panel = next(iter(self.page.arrangement.panels), "")
-        return ", ".join(part for part in (self.figure.title if self.figure else "", panel) if part)
-
-    @property
-    def badges(self) -> list[tuple[str, str]]:
-        """(text, class) of what to know at a glance."""
-        found = [(self.page.stability, self.page.stability)] if self.page.stability else []
-        if self.page.failed:
-            found.append((f"{self.page.failed} failed", "failed"))
-        for verdict in ("holds", "fails", "undecided"):
-            count = sum(row.verdict == verdict for row in self.page.record.claims)
-            if count:
-                word = {"holds": "hold", "fails": "fail"}.get(verdict, verdict) if count > 1 else verdict
-                found.append((f"{plural(count, 'claim')} {word}", verdict))
-        if self.page.findings.warnings:
-            found.append((plural(len(self.page.findings.warnings), "warning"), "noisy"))
-        return found
-
-    @property
-    def group(self) -> str:
-        """The folder of experiments it belongs to; "" for one that stands alone."""
-        name = self.page.record.name
-        return name.rpartition("/")[0].replace("/", ", ").replace("-", " ").capitalize()
-
-    @property
-    def size(self) -> str:
-        """How much was measured."""
-        return f"{plural(len(self.page.record.points), 'point')}, {plural(len(self.page.runs), 'run')}"
 
 
 def write_report(database: str | Path, out: str | Path) -> Path:
@@ -162,7 +118,8 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
         if replay is not None:
             replays[page.record.name] = f"{page.folder}/{replay.file}"
         yield from _experiment(environment, page, elsewhere, claims, further, replay)
-    yield "index.html", _index(environment, pages, records, further, machines(database), accuracy, stability)
+    overview = Overview(pages, accuracy, stability)
+    yield "index.html", _index(environment, overview, further, machines(database), records)
     if accuracy:
         yield from _accuracy(environment, accuracy, claims, further, records)
     if backends.records:
@@ -264,51 +221,22 @@ def _contents(page: ExperimentPage, published: bool, replay: bool) -> list[tuple
 
 def _index(
     environment: Environment,
-    pages: Sequence[ExperimentPage],
-    records: Sequence[ExperimentRecord],
+    found: Overview,
     further: Sequence[str],
     machines: Mapping[str, Mapping[str, Any]],
-    accuracy: Sequence[AccuracySection],
-    stability: Matrix | None,
+    records: Sequence[ExperimentRecord],
 ) -> str:
-    listed = []
-    for place, page in enumerate(pages):
-        # ids are unique on a page, and the overview shows figures of many
-        figure = replace(page.figures[0], name=f"card{place}") if page.figures else None
-        listed.append(Listed(page, f"{page.folder}/index.html", figure))
-    failures = [(entry, sentence) for entry in listed for sentence in entry.page.findings.failures]
-    cases = [entry for entry in listed if is_case(entry.page)]
-    listed = sorted((entry for entry in listed if entry not in cases), key=lambda entry: entry.group)
-    claims: list[tuple[Listed, VerdictRow]] = [(entry, row) for entry in listed for row in entry.page.record.claims]
-    used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in pages))
-    total, failed = sum(len(page.runs) for page in pages), sum(page.failed for page in pages)
-    totals = f"{plural(len(pages), 'experiment')}, {plural(total, 'run')}, {failed or 'none'} failed."
-    verdicts = Counter(row.verdict for _, row in claims)
-    if claims:
-        ways = (("holds", "hold"), ("fails", "do not"), ("undecided", "undecided"))
-        said = ", ".join(f"{verdicts[verdict]} {word}" for verdict, word in ways if verdicts[verdict])
-        totals += f" Of {plural(len(claims), 'claim')}, {said}."
+    used = {record.sweep.fingerprint for record in records}.union(*(set(page.runs["machine"]) for page in found.pages))
     return environment.get_template("index.html.j2").render(
         title="Overview · harness",
-        navigation=_navigation("", bool(claims), further) if pages else [Link("Overview", "", here=True)],
-        pages=listed,
-        failures=failures,
-        stability=stability,
-        cases=cases,
-        groups=[(group, list(entries)) for group, entries in groupby(listed, key=lambda entry: entry.group)],
-        claims=_by_source(claims),
+        navigation=_navigation("", bool(found.claims), further) if found.pages else [Link("Overview", "", here=True)],
+        overview=found,
         machines=[(machine_text(facts), machine_rows(facts)) for name, facts in machines.items() if name in used],
-        totals=totals,
-        decisions=[(f"{ACCURACY}#{found.identity}", said) for found in accuracy for said in found.decisions],
+        decisions=[
+            (f"{ACCURACY}#{section.identity}", said) for section in found.accuracy for said in section.decisions
+        ],
         footer=_footer(records),
     )
-
-
-def _by_source(claims: Sequence[tuple[Listed, VerdictRow]]) -> list[tuple[str, list[tuple[Listed, VerdictRow]]]]:
-    """Claims under a heading each: those of the homework, whose numbers these are held against, then all others."""
-    homework = [claim for claim in claims if str(claim[1].criterion.get("source", "")).startswith("homework")]
-    others = [claim for claim in claims if claim not in homework]
-    return [(title, found) for title, found in (("Of the homework", homework), ("Of our own", others)) if found]
 
 
 def _stability(

@@ -116,14 +116,11 @@ class Case:
 
     def _judged(self, rows: Sequence[VerdictRow], mine: pd.DataFrame) -> Iterator[tuple[str, str]]:
         """Of every row of `expect` or `claims` that speaks of these runs: its verdict on them, and its worst number."""
+        points = mine.drop_duplicates("point")
         for row in rows:
-            among = matching(self.page.runs, row.criterion.get("where") or {})
+            among = matching(points, row.criterion.get("where") or {})
             bounds = limits(as_criterion(row.criterion))
-            groups = [
-                group
-                for group in row.detail.get("groups") or ()
-                if matching(among, group["parameters"])["point"].isin(mine["point"]).any()
-            ]
+            groups = [group for group in row.detail.get("groups") or () if len(matching(among, group["parameters"]))]
             if groups:
                 failing = [group for group in groups if group["verdict"] == "fails"]
                 worst = max(failing or groups, key=lambda group: bounds.excess(group["value"]))

@@ -14,7 +14,7 @@ from harness.report.stability import is_case
 def summary(pages: Sequence[ExperimentPage], decisions: Sequence[str], stability: Sequence[str]) -> str:
     """A table with a row an experiment: its title, what was found, and what became of its claims.
 
-    Machine, versions and command of the newest sweep stand above it; below it what to use at which accuracy, and how
+    Above it stand machine, versions and command of the newest sweep, and what to use at which accuracy; below it how
     far each method survives stiff and extreme scenes, whose experiments have no rows of their own.
     """
     if not pages:
@@ -24,14 +24,18 @@ def summary(pages: Sequence[ExperimentPage], decisions: Sequence[str], stability
         f"Measured by `{newest.command}` (harness {newest.version}, {newest.started[:10]}) "
         f"on {machine_text(newest.machine)}."
     )
-    listed = [page for page in pages if not is_case(page)]
-    rows = ["| experiment | what was found | claims |", "|---|---|---|"]
-    rows += [f"| {_cell(page.record.title)} | {_cell(page.findings.answer)} | {_claims(page)} |" for page in listed]
-    lines = [head, "", *(rows if listed else [])]
-    for title, sentences in (("What to use", decisions), ("Stiff and extreme scenes", stability)):
-        if sentences:
-            lines += ["", f"**{title}**", "", *(f"- {_cell(sentence)}" for sentence in sentences)]
+    rows = [
+        f"| {_cell(page.record.title)} | {_cell(page.findings.answer)} | {_claims(page)} |"
+        for page in pages
+        if not is_case(page)
+    ]
+    table = ["", "| experiment | what was found | claims |", "|---|---|---|", *rows] if rows else []
+    lines = [head, *_list("What to use", decisions), *table, *_list("Stiff and extreme scenes", stability)]
     return "\n".join(lines) + "\n"
+
+
+def _list(title: str, sentences: Sequence[str]) -> list[str]:
+    return ["", f"**{title}**", "", *(f"- {_cell(sentence)}" for sentence in sentences)] if sentences else []
 
 
 def _claims(page: ExperimentPage) -> str:
