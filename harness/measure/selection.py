@@ -19,7 +19,7 @@ def matching(table: pd.DataFrame, where: Mapping[str, Any]) -> pd.DataFrame:
         return table
     mask = np.ones(len(table), dtype=bool)
     for leaf, wanted in where.items():
-        mask &= [_is(value, wanted) for value in table[leaf]] if leaf in table else False
+        mask &= np.array([_is(value, wanted) for value in table[leaf]], dtype=bool) if leaf in table else False
     chosen: pd.DataFrame = table.loc[mask]
     return chosen
 
