@@ -70,3 +70,12 @@ def test_the_lines_for_python_run(block, monkeypatch):
     exec(small, namespace)
     assert len(namespace["table"]) == 3
     assert (np.diff(namespace["events"].times) >= 0).all()
+
+
+def test_the_findings_are_those_that_are_published():
+    text, published = README.read_text(encoding="utf-8"), README.parent / "results" / "published"
+    shown = text.split("<!-- findings -->\n", 1)[1].split("<!-- /findings -->", 1)[0]
+    assert shown == (published / "findings.md").read_text(encoding="utf-8")
+    pictures = re.findall(r"!\[[^\]]+\]\((\S+)\)", text)
+    assert pictures
+    assert all((README.parent / picture).is_file() for picture in pictures)

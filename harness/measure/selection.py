@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 _SAME = 1e-9  # relative: numbers of a file and of a run that mean the same
@@ -15,13 +16,16 @@ _SAME = 1e-9  # relative: numbers of a file and of a run that mean the same
 
 def matching(table: pd.DataFrame, where: Mapping[str, Any]) -> pd.DataFrame:
     """The rows whose leaves have these values, or one of these where there is a list."""
-    if not where:
-        return table
-    mask = np.ones(len(table), dtype=bool)
-    for leaf, wanted in where.items():
-        mask &= np.array([_is(value, wanted) for value in table[leaf]], dtype=bool) if leaf in table else False
-    chosen: pd.DataFrame = table.loc[mask]
+    chosen: pd.DataFrame = table.loc[which(table, where)] if where else table
     return chosen
+
+
+def which(table: pd.DataFrame, where: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
+    """Of every row, whether it is one of those."""
+    mask = np.ones(len(table), np.bool_)
+    for leaf, wanted in where.items():
+        mask &= np.array([_is(value, wanted) for value in table[leaf]], np.bool_) if leaf in table else False
+    return mask
 
 
 def varying(table: pd.DataFrame, swept: Sequence[str]) -> list[str]:

@@ -155,8 +155,8 @@ def _navigation(up: str, claims: bool, further: Sequence[str], here: Link | None
     overview = Link("Overview", f"{up}index.html", here is None)
     titles = ("Experiments", "Claims", "Data") if claims else ("Experiments", "Data")
     places = [Link(title, f"{up}index.html#{title.lower()}") for title in titles]
-    others = [Link(TITLES[file], f"{up}{file}") for file in further if here is None or here.href != file]
-    return [overview, *places, *others, *([here] if here else [])]
+    others = [here if here and here.href == file else Link(TITLES[file], f"{up}{file}") for file in further]
+    return [overview, *places, *others, *([here] if here and here not in others else [])]
 
 
 def _experiment(

@@ -19,7 +19,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from harness.measure.limits import Limits, limits
-from harness.measure.selection import matching
+from harness.measure.selection import matching, which
 from harness.report.criteria import as_criterion
 from harness.report.pages import ExperimentPage
 from harness.report.quantity import leaf_text, number, plural
@@ -118,9 +118,11 @@ class Case:
         """Of every row of `expect` or `claims` that speaks of these runs: its verdict on them, and its worst number."""
         points = mine.drop_duplicates("point")
         for row in rows:
-            among = matching(points, row.criterion.get("where") or {})
+            among = which(points, row.criterion.get("where") or {})
             bounds = limits(as_criterion(row.criterion))
-            groups = [group for group in row.detail.get("groups") or () if len(matching(among, group["parameters"]))]
+            groups = [
+                group for group in row.detail.get("groups") or () if (among & which(points, group["parameters"])).any()
+            ]
             if groups:
                 failing = [group for group in groups if group["verdict"] == "fails"]
                 worst = max(failing or groups, key=lambda group: bounds.excess(group["value"]))
