@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from harness.errors import InputError
 
 if TYPE_CHECKING:
-    from harness.store.records import ExperimentRecord, RunRecord, VerdictRow
+    from harness.store.records import ComparisonRecord, ExperimentRecord, RunRecord, VerdictRow
 
 _FIXED = ("experiment", "repeat", "status", "reason")
 
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--format",
         choices=("csv", "json"),
         default="csv",
-        help="csv: a row a run; json: runs, claims and expectations (default: %(default)s)",
+        help="csv: a row a run; json: also claims, expectations and comparisons (default: %(default)s)",
     )
     parser.add_argument("--out", type=Path, metavar="FILE", help="write it there instead of printing it")
 
@@ -45,7 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.store import tables
 
     runs = tables.run_records(arguments.db)
-    text = _csv(runs) if arguments.format == "csv" else _json(runs, tables.experiments(arguments.db))
+    if arguments.format == "csv":
+        text = _csv(runs)
+    else:
+        text = _json(runs, tables.experiments(arguments.db), tables.comparisons(arguments.db))
     if arguments.out is None:
         sys.stdout.write(text)
         return 0
@@ -73,8 +76,13 @@ def _cell(value: Any) -> Any:
     return json.dumps(value) if isinstance(value, list | dict) else value
 
 
-def _json(runs: Sequence[RunRecord], experiments: Iterable[ExperimentRecord]) -> str:
-    """One document. JSON has no infinity and nothing that is not a number: such a metric is null."""
+def _json(
+    runs: Sequence[RunRecord], experiments: Iterable[ExperimentRecord], comparisons: Iterable[ComparisonRecord]
+) -> str:
+    """One document, with what backends were held against each other where they were.
+
+    JSON has no infinity and nothing that is not a number: such a metric is null.
+    """
     listed = list(experiments)
     document = {
         "runs": [
@@ -91,6 +99,11 @@ def _json(runs: Sequence[RunRecord], experiments: Iterable[ExperimentRecord]) ->
         "claims": [_verdict(experiment.name, row) for experiment in listed for row in experiment.claims],
         "expectations": [_verdict(experiment.name, row) for experiment in listed for row in experiment.expectations],
     }
+    held = [
+        {"experiment": found.experiment, "backends": list(found.backends), "found": found.document}
+        for found in comparisons
+    ]
+    document |= {"comparisons": held} if held else {}
     return json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
 
 

@@ -132,3 +132,14 @@ def test_an_export_of_nothing_measured_is_empty(path: Path, capsys: pytest.Captu
     assert json.loads(capsys.readouterr().out) == {"runs": [], "claims": [], "expectations": []}
     exported("--db", str(path))
     assert capsys.readouterr().out == "experiment,repeat,status,reason\n"
+
+
+def test_what_backends_were_found_to_say_of_each_other_is_exported(
+    path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with Database.open(path) as database:
+        database.add_comparison("harness compare a.yaml", "a", ("fcl", "pybullet"), "k", {"pairs": [{"agree": 7}]})
+    exported("--db", str(path), "--format", "json")
+    assert json.loads(capsys.readouterr().out)["comparisons"] == [
+        {"experiment": "a", "backends": ["fcl", "pybullet"], "found": {"pairs": [{"agree": 7}]}}
+    ]
