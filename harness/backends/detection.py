@@ -22,11 +22,6 @@ def decide_detection(scene: Scene, algorithm: str, decisions: Decisions) -> None
     scene : Scene
     algorithm : {"brute-force", "grid", "tree"}
     decisions : Decisions
-
-    Raises
-    ------
-    StageError
-        If a stage is forced to where an answer would change, or the algorithm is not what it says.
     """
     if algorithm == "brute-force":
         _brute_force(scene, decisions)

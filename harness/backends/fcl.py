@@ -71,6 +71,7 @@ class Fcl:
             return
         decisions = Decisions(self.stages)
         decide_detection(scene, self._algorithm, decisions)
+        decisions.check()
         kept = {stage.name: stage.kept for stage in decisions.stages}
         if self._algorithm == "tree":
             self._broad = FclTree(scene)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from harness.errors import InputError
+from harness.errors import InputError, Problem
 
 
 @dataclass(frozen=True)
@@ -19,12 +19,11 @@ class Stage:
 
 
 class StageError(InputError):
-    """A stage that cannot be forced; `stage` is its name."""
+    """Stages that cannot be forced; `refusals` are their names, each with the reason."""
 
-    def __init__(self, stage: str, message: str) -> None:
-        super().__init__(f"stages: {message}")
-        self.stage = stage
-        self.message = message
+    def __init__(self, refusals: Sequence[tuple[str, str]]) -> None:
+        super().__init__([Problem(f"stages: {message}") for _, message in refusals])
+        self.refusals = tuple(refusals)
 
 
 class Decisions:
@@ -37,6 +36,7 @@ class Decisions:
 
     def __init__(self, forced: Mapping[str, bool] | None = None) -> None:
         self.stages: list[Stage] = []
+        self._refusals: list[tuple[str, str]] = []
         self._forced = dict(forced or {})
 
     def take(self, name: str, kept: bool, why: str, *, fixed: str | None = None) -> bool:
@@ -51,18 +51,16 @@ class Decisions:
         Returns
         -------
         bool
-            Whether the stage is kept.
-
-        Raises
-        ------
-        StageError
-            If it is forced the other way, and that would change an answer.
+            Whether the stage is kept. One that is forced the other way, where that would change an answer, is kept
+            as its scene needs it until `finish` or `check` refuses.
         """
         wanted = self._forced.get(name, kept)
         if wanted != kept:
             if fixed is not None:
-                raise StageError(name, f"{name} cannot be forced {_state(wanted)}: {fixed}")
-            why = f"forced {_state(wanted)} by engine.stages; it would be {'kept' if kept else 'left out'}: {why}"
+                self._refusals.append((name, f"{name} cannot be forced {_state(wanted)}: {fixed}"))
+                wanted = kept
+            else:
+                why = f"forced {_state(wanted)} by engine.stages; it would be {'kept' if kept else 'left out'}: {why}"
         self.stages.append(Stage(name, wanted, why))
         return wanted
 
@@ -72,15 +70,27 @@ class Decisions:
         Raises
         ------
         StageError
-            If one is forced that does not exist.
+            If stages are forced that do not exist, or the other way where that would change an answer: all of them.
         """
         names = [stage.name for stage in self.stages]
         for name in self._forced:
             if name not in names:
                 near = get_close_matches(name, names, 1)
                 hint = f'did you mean "{near[0]}"?' if near else f"there are {', '.join(names)}"
-                raise StageError(name, f'this pipeline has no stage "{name}"; {hint}')
+                self._refusals.append((name, f'this pipeline has no stage "{name}"; {hint}'))
+        self.check()
         return tuple(self.stages)
+
+    def check(self) -> None:
+        """Refuse what was refused until now.
+
+        Raises
+        ------
+        StageError
+            If that is anything.
+        """
+        if self._refusals:
+            raise StageError(self._refusals)
 
 
 def _state(kept: bool) -> str:

@@ -108,9 +108,10 @@ def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Pro
         try:
             plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory))
         except StageError as error:
-            if (error.stage, error.message) not in refused:
-                refused.add((error.stage, error.message))
-                yield experiment.leaf_problem("stages", point.engine.stages, error.message, (error.stage,))
+            for stage, message in error.refusals:
+                if (stage, message) not in refused:
+                    refused.add((stage, message))
+                    yield experiment.leaf_problem("stages", point.engine.stages, message, (stage,))
         except (PlacementError, SceneSizeError, InputError):  # the run will say it
             continue
 

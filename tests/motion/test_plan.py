@@ -208,6 +208,12 @@ def test_a_stage_that_is_needed_or_unknown_is_refused_in_a_sentence(forced, said
         stages(random_scene("mesh", 8, 4.0), forced=forced)
 
 
+def test_all_that_is_refused_is_said_at_once():
+    with pytest.raises(StageError) as refused:
+        stages(random_scene("mesh", 8, 4.0), forced={"hul_axis": False, "pairs": False, "walls": False})
+    assert [name for name, _ in refused.value.refusals] == ["pairs", "walls", "hul_axis"]
+
+
 def test_brute_force_can_be_made_to_leave_out_nothing():
     for name in NAMES:
         if name != "fcl":
