@@ -11,7 +11,7 @@ from harness.report.quantity import exponent_text, leaf_text, number, plural, sc
 from harness.report.ranking import Growth, Ranked, rank
 from harness.report.series import Arrangement, Cell, Series
 from harness.report.table import Column, Entry, Group, Table, counted, failure, measured, plain, words
-from harness.report.words import leaf_title, metric_title, metric_unit, setting
+from harness.report.words import is_ranked, leaf_title, metric_title, metric_unit, setting
 
 # The homework's columns, in its order.
 _TESTS = (
@@ -220,15 +220,18 @@ def place_of(arrangement: Arrangement, series: Series, x: object) -> str:
 def _comparison(arrangement: Arrangement, metric: str) -> Table:
     xs = arrangement.x_values or (None,)
     unit = scale([cell.median(metric) for cell in arrangement.cells], metric_unit(metric))
-    rows = []
+    ranked, rows = is_ranked(metric), []
     for panel in arrangement.panels:
         lines = [series for series in arrangement.series if series.panel == panel]
-        ranks = [{entry.series.label: entry for entry in rank(lines, x, metric, arrangement.floor(metric))} for x in xs]
+        ranks = [
+            {entry.series.label: entry for entry in rank(lines, x, metric, arrangement.floor(metric))} if ranked else {}
+            for x in xs
+        ]
         for series in lines:
             row = [words(series.label, series.style), *_panel_entry(arrangement, series.cells[0])]
             row += [
-                measured(series.at(x), metric, unit, _mark(ranked.get(series.label)))
-                for x, ranked in zip(xs, ranks, strict=True)
+                measured(series.at(x), metric, unit, _mark(places.get(series.label)))
+                for x, places in zip(xs, ranks, strict=True)
             ]
             rows.append(tuple(row))
     columns = [Column("Series", numeric=False), *_panel_column(arrangement)]
@@ -237,10 +240,9 @@ def _comparison(arrangement: Arrangement, metric: str) -> Table:
     else:
         columns += [Column(setting(arrangement.x, x)) for x in xs]
     units = f", {unit.symbol}" if unit.symbol else ""
-    note = (
-        f"{metric}{units}, {_medians(arrangement)}. Bold: best, or not to be told from it. "
-        "Tint: times worse than the best."
-    )
+    note = f"{metric}{units}, {_medians(arrangement)}."
+    if ranked:
+        note += " Bold: best, or not to be told from it. Tint: times worse than the best."
     if any(cell.disagrees for cell in arrangement.cells):
         note += " Struck through: disagrees with the reference, and is not ranked."
     return Table(_heading(metric), note, tuple(columns), tuple(rows))

@@ -55,6 +55,8 @@ _METRICS = {
 }
 # Leaves whose values explain themselves in a label; others are written "leaf value".
 _SELF_EVIDENT = ("backend", "algorithm", "mesh", "response", "stages")
+# What a run finds, rather than what it costs or how wrong it is.
+_OUTCOMES = ("events", "pair_hits", "box_hits", "pair_contacts", "frames", "collision_rate", "pressure")
 # What `scene_text` says of a scene already.
 SCENE_LEAVES = ("count", "mesh", "faces", "hull_vertices", "shape", "box_ratio", "box", "box_side", "packing")
 
@@ -91,6 +93,11 @@ def setting(leaf: str, value: object) -> str:
 def more_is_better(name: str) -> bool:
     """Whether the larger of two values of the metric wins."""
     return name.removesuffix("_elapsed").endswith("_per_second")
+
+
+def is_ranked(name: str) -> bool:
+    """Whether less, or more, of the metric is better: of what happens in a scene there is no best."""
+    return name not in _OUTCOMES
 
 
 def scene_text(parameters: Mapping[str, Any]) -> str:

@@ -280,3 +280,15 @@ def test_the_findings_come_as_markdown_with_a_row_an_experiment(database, pages)
     assert titles == [row.title for row in experiments(database)]
     assert all(row.count(" | ") == 2 for row in rows)
     assert not re.search(r"</?(?!sup)\w+>", pages["findings.md"])
+
+
+def test_what_happens_in_a_scene_has_no_best(report_of):
+    def luckier(parameters, repeat, metrics):
+        metrics["pair_hits"] *= 4 if parameters["backend"] == "pybullet" else 1
+
+    swept = {"count": [10, 40, 160], "backend": ["fcl", "pybullet"]}
+    html = page(report_of(swept=swept, fate=luckier, report={"x": "count", "y": ["pair_hits", "pair_tests"]}), "x")
+    names = ("Object/object hits", "Object/object tests")
+    hits, tests = (html.split(f'aria-label="{name}">', 1)[1].split("</table>", 1)[0] for name in names)
+    assert not re.search(r'class="[^"]*\b(best|t\d)\b', hits)
+    assert re.search(r'class="[^"]*\bbest\b', tests)
