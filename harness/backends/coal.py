@@ -9,7 +9,8 @@ from scipy.spatial.transform import Rotation
 from harness.arrays import Floats, Pairs
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Surface
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 # coal's own 1e-6 leaves more verdicts to chance
 _GJK_TOLERANCE = 1e-12

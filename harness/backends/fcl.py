@@ -19,7 +19,8 @@ from harness.narrowphase.fcl_objects import FclObjects
 from harness.narrowphase.fcl_tree import FclTree
 from harness.narrowphase.judges import FclJudge, HullJudge, Judge, MeshJudge
 from harness.narrowphase.units import UNITS
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 Algorithm = Literal["brute-force", "grid", "tree"]
 

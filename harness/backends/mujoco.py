@@ -12,7 +12,8 @@ import numpy as np
 from harness.arrays import Floats, Pairs
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 # B for contacts (each takes some 600): of 64 neighbours a body, as only deep overlaps of unlike sizes have; memory that
 # is never touched costs nothing.

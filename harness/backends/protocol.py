@@ -11,7 +11,8 @@ from typing import Protocol, runtime_checkable
 
 from harness.arrays import Floats, Pairs
 from harness.scene.hull import Hull
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 
 @runtime_checkable

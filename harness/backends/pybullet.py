@@ -11,7 +11,8 @@ import pybullet
 from harness.arrays import Floats, Pairs
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 # Bullet inflates every hull by this (in its own units) and offers contact points up to 0.02 apart; a margin of zero is
 # worse, since real hits are missed. The gap between two hulls is contactDistance + 2 margins.

@@ -13,7 +13,8 @@ from trimesh.collision import CollisionManager
 from harness.arrays import Floats, Pairs
 from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 
 class Trimesh:

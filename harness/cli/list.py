@@ -5,14 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from harness.vocabulary import ALGORITHMS
+
 FOLDER = "experiments"
-ALGORITHMS = {
-    "brute-force": "every pair, every frame",
-    "grid": "pairs from uniform or hierarchical cells sized to the bodies",
-    "tree": "pairs from a dynamic tree of axis-aligned boxes",
-    "native": "the backend's own broad phase",
-    "predictive": "from event to event: the next collision of every body is computed, not stepped to",
-}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     listing = {
         "experiments": _experiments(),
         "backends": _backends(),
-        "algorithms": [{"name": name, "description": text} for name, text in ALGORITHMS.items()],
+        "algorithms": [{"name": name, "description": word.meaning} for name, word in ALGORITHMS.items()],
         "metrics": _metrics(),
     }
     if arguments.json:

@@ -12,7 +12,6 @@ from typing import Any
 import yaml
 
 from harness.backends import registry
-from harness.cli.list import ALGORITHMS
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.experiment.leaves import LEAVES
@@ -24,6 +23,7 @@ from harness.runner.servers import Servers, mesh_of, task_of
 from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
+from harness.vocabulary import ALGORITHMS
 
 # More than this is counted and timed, but not shown: a browser would choke on it.
 MOST_BODIES = 5000

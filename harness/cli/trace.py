@@ -23,7 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     from harness.runner.preparation import prepare
     from harness.runner.sweep import RunError, trace
-    from harness.scene.box import WALLS
+    from harness.vocabulary import WALLS
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))
     try:

@@ -13,9 +13,9 @@ from harness.compare.poses import Pose
 from harness.compare.side_by_side import side_by_side
 from harness.motion.hits import Trace
 from harness.motion.plan import make_plan
-from harness.motion.response import Response
 from harness.motion.stepped import fly_stepped
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Response, Shape
 
 
 def fly_both(

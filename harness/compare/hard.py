@@ -21,7 +21,8 @@ from harness.compare.poses import Pose, PoseSet
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.mesh import Mesh, Surface
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 GAPS = (0.0, *(sign * 10.0**power for power in range(-15, -1) for sign in (1, -1)))
 """Of the size of the smaller body."""

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field, fields
 from typing import TypeVar
 
-from harness.scene.scene import Shape
+from harness.vocabulary import Shape
 
 Backends = tuple[str, str]
 

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.experiment.messages import listed
+from harness.vocabulary import algorithms_of
 
 Values = Mapping[str, Any]
 
-# What a backend can be asked for. A backend that is not named here brings its own detection, whole.
-ALGORITHMS = {"fcl": ("brute-force", "grid", "tree", "predictive")}
-OTHER_ALGORITHMS = ("native",)
 # The shapes of a backend that lacks one; what a backend from elsewhere holds is known when it is asked.
 SHAPES = {"trimesh": ("hull", "mesh")}
 
@@ -95,7 +93,7 @@ def frames_can_be_counted(values: Values) -> Conflict | None:
 
 def backend_has_the_algorithm(values: Values) -> Conflict | None:
     """fcl answers single questions, so that any algorithm can ask them; other backends bring their own detection."""
-    backend, algorithms = values["backend"], ALGORITHMS.get(values["backend"], OTHER_ALGORITHMS)
+    backend, algorithms = values["backend"], algorithms_of(values["backend"])
     if values["algorithm"] not in algorithms:
         message = f"backend {backend} has no algorithm {{}}, only {listed(algorithms)}"
         return Conflict(message, ("backend", "algorithm"), excludable=True)

@@ -19,7 +19,8 @@ from harness.experiment.document import KEY
 from harness.experiment.experiment import Point, Reference
 from harness.experiment.leaves import INSTEAD_OF, LEAVES, SECTIONS, identity
 from harness.experiment.messages import flow, listed
-from harness.experiment.schema import MeasureSpec, ReferenceSpec, Shape
+from harness.experiment.schema import MeasureSpec, ReferenceSpec
+from harness.vocabulary import Shape
 
 # All points are held in memory, a few kilobytes each.
 MOST_POINTS = 10**5

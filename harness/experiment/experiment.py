@@ -13,7 +13,8 @@ from harness.experiment.criterion import Criterion
 from harness.experiment.document import Document
 from harness.experiment.leaves import identity, plain
 from harness.experiment.presentation import Published, ReportSpec
-from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, ReferenceSpec, SceneSpec, Shape
+from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, ReferenceSpec, SceneSpec
+from harness.vocabulary import Shape
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from harness.experiment.combinations import ENGINE, MOTION, SCENE, Rule, conflicts
 from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
 from harness.experiment.number import Bytes, Number, Switch, Vector, Whole, holding, wrong
+from harness.vocabulary import Algorithm, Response, Shape
 
-Algorithm = Literal["brute-force", "grid", "tree", "native", "predictive"]
-Shape = Literal["sphere", "hull", "mesh"]
-Response = Literal["reflect", "elastic", "none"]
 Text = Annotated[str, Field(min_length=1)]
 Positive = Annotated[Number, Field(gt=0)]
 NotNegative = Annotated[Number, Field(ge=0)]

@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.motion.course import Course
-from harness.scene.box import WALLS
+from harness.vocabulary import WALLS
 
 
 @dataclass

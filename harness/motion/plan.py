@@ -15,8 +15,8 @@ from harness.backends.detection import NAMES, decide_detection, equal_sizes
 from harness.backends.stages import Decisions, Stage
 from harness.motion.predictive.solids import needs_its_surface
 from harness.motion.reach import nobody_meets, nobody_moves, walls_are_out_of_reach
-from harness.motion.response import Response
 from harness.scene.scene import Scene
+from harness.vocabulary import Response
 
 
 @dataclass(frozen=True)

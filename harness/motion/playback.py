@@ -10,8 +10,9 @@ import numpy as np
 from harness.arrays import Floats, Ints, Pairs
 from harness.kernel import kernel
 from harness.motion.hits import Trace
-from harness.motion.response import Response, answer_pairs
+from harness.motion.response import answer_pairs
 from harness.scene.bodies import Bodies
+from harness.vocabulary import Response
 
 
 def positions_at(times: Floats, bodies: Bodies, trace: Trace, response: Response, restitution: float) -> Floats:

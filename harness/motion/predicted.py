@@ -21,10 +21,10 @@ from harness.motion.plan import Plan
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form
-from harness.motion.response import Response
 from harness.motion.soundness import refuse_lost
 from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene
+from harness.vocabulary import Response
 
 # How often a run is looked at from outside its clock; events are the same to the bit however often.
 LOOKS = 5

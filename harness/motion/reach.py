@@ -11,8 +11,8 @@ import numpy as np
 from harness.arrays import Floats
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.measure.conservation import energy
-from harness.motion.response import Response
 from harness.scene.scene import Scene
+from harness.vocabulary import Response
 
 # Relative room for rounding: of poses, of the energy, and of vertices that stick out of their bounding sphere.
 SLACK = 1e-9

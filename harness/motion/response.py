@@ -13,8 +13,6 @@ import numpy as np
 from harness.arrays import Flags, Floats, Pairs
 from harness.kernel import kernel
 
-Response = Literal["reflect", "elastic", "none"]
-
 
 class Answers:
     """Answers the contacts of bodies, and remembers whose velocity changed.

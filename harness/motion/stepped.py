@@ -20,11 +20,12 @@ from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Flight
 from harness.motion.observer import Folds, Observer, Onsets
 from harness.motion.plan import Plan
-from harness.motion.response import Answers, Response
+from harness.motion.response import Answers
 from harness.motion.soundness import refuse_lost
 from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
+from harness.vocabulary import Response
 
 PHASES = ("pair_seconds", "response_seconds", "box_seconds")
 

@@ -21,11 +21,10 @@ from harness.measure.noise import noise_floor
 from harness.measure.statistics import Summary, summary
 from harness.report.words import setting
 from harness.store.records import ControlRecord, ExperimentRecord, PointRow
+from harness.vocabulary import METHOD_LEAVES
 
 MOST_IN_A_PANEL = 6
 DEFAULT_METRICS = ("pair_seconds", "box_seconds")
-# What a method is, as against the scene it is put to: panels are split by the scene first.
-METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +135,7 @@ class Arrangement:
     @property
     def methods(self) -> tuple[Series, ...]:
         """What can be ranked: the series, or, where one series runs over methods, each of its points as one."""
-        if len(self.series) > 1 or self.numeric or self.x not in METHOD:
+        if len(self.series) > 1 or self.numeric or self.x not in METHOD_LEAVES:
             return self.series
         line = self.series[0]
         return tuple(
@@ -211,11 +210,11 @@ def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> 
         return wanted
     numeric = [leaf for leaf in swept if all(_is_number(cell.point.parameters.get(leaf)) for cell in cells)]
     # where no leaf is a number, what the method is tells more as series than along x
-    return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD] or swept), None)
+    return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD_LEAVES] or swept), None)
 
 
 def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
-    scene = [leaf for leaf in others if leaf not in METHOD]
+    scene = [leaf for leaf in others if leaf not in METHOD_LEAVES]
     mixed = 0 < len(scene) < len(others)  # methods are compared on the same scene
     if len(others) < 2 or not (mixed or len({_key(cell, others) for cell in cells}) > MOST_IN_A_PANEL):
         return None
@@ -224,7 +223,7 @@ def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
 
 
 def _scene(point: PointRow) -> dict[str, Any]:
-    return {leaf: value for leaf, value in point.parameters.items() if leaf not in METHOD}
+    return {leaf: value for leaf, value in point.parameters.items() if leaf not in METHOD_LEAVES}
 
 
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:

@@ -15,9 +15,10 @@ from typing import Any
 from harness.measure.noise import told_apart
 from harness.measure.statistics import Exponent, Summary, fit_exponent
 from harness.report.ranking import times_worse
-from harness.report.series import METHOD, Arrangement, Cell
+from harness.report.series import Arrangement, Cell
 from harness.report.words import setting
 from harness.store.records import ExperimentRecord
+from harness.vocabulary import KNOBS, METHOD_LEAVES
 
 COST, ERROR = "run_seconds", "time_error"
 # Of the reference's hits, how many a method may miss, and how many more it may report, to count as right.
@@ -25,7 +26,6 @@ MOST_WRONG = 0.01
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 # At which of these a sentence says what to use, if anything reaches it.
 PREFERRED = 1e-4
-_KNOBS = ("dt", "tolerance")
 FEWEST_SETTINGS = 3
 
 
@@ -142,8 +142,8 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
         return []
     scenes: dict[str, list[Cell]] = {}
     for cell in arrangement.cells:
-        scenes.setdefault(_key(cell, lambda leaf: leaf not in METHOD and leaf not in _FOLLOWS), []).append(cell)
-    leaves = _differing([cells[0] for cells in scenes.values()], lambda leaf: leaf not in METHOD)
+        scenes.setdefault(_key(cell, lambda leaf: leaf not in METHOD_LEAVES and leaf not in _FOLLOWS), []).append(cell)
+    leaves = _differing([cells[0] for cells in scenes.values()], lambda leaf: leaf not in METHOD_LEAVES)
     found = []
     for cells in scenes.values():
         methods = _methods(cells)
@@ -160,9 +160,9 @@ _FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
 def _methods(cells: Sequence[Cell]) -> tuple[Method, ...]:
     grouped: dict[str, list[Cell]] = {}
     for cell in cells:
-        grouped.setdefault(_key(cell, lambda leaf: leaf in METHOD and leaf not in _KNOBS), []).append(cell)
+        grouped.setdefault(_key(cell, lambda leaf: leaf in METHOD_LEAVES and leaf not in KNOBS), []).append(cell)
     leaves = _differing(
-        [members[0] for members in grouped.values()], lambda leaf: leaf in METHOD and leaf not in _KNOBS
+        [members[0] for members in grouped.values()], lambda leaf: leaf in METHOD_LEAVES and leaf not in KNOBS
     )
     made: list[Method] = []
     for members in grouped.values():

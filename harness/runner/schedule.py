@@ -17,9 +17,7 @@ from typing import Any, NamedTuple
 
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.statistics import FEWEST_FOR_INTERVAL
-
-# Leaves that say how a question is answered; an experiment that varies one of them compares methods.
-METHOD = ("backend", "algorithm", "shape", "tolerance", "stages", "dt")
+from harness.vocabulary import METHOD_LEAVES
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +114,7 @@ def _controlled_point(experiment: Experiment, points: Sequence[Point], repeat: i
     None where nothing is to be told apart: by one method, or with too few repeats for an interval.
     """
     repeats = experiment.measure.repeats
-    if not points or repeats < FEWEST_FOR_INTERVAL or not set(experiment.swept).intersection(METHOD):
+    if not points or repeats < FEWEST_FOR_INTERVAL or not set(experiment.swept).intersection(METHOD_LEAVES):
         return None
     return points[(2 * repeat + 1) * len(points) // (2 * repeats)]
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 from harness.experiment.experiment import Point
 from harness.motion.hits import Trace
 from harness.motion.plan import Plan
 from harness.store.recording import Recording
-
-Status = Literal["ok", "failed", "timeout", "memory", "crashed", "rejected"]
+from harness.vocabulary import Status
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from harness.broadphase.grid import Grid
 from harness.experiment.experiment import Point
 from harness.motion.plan import make_plan
 from harness.motion.predicted import fly_predicted
-from harness.motion.response import Response
 from harness.motion.stepped import fly_stepped
 from harness.narrowphase.containment import Containment
 from harness.narrowphase.gjk import MARGIN
@@ -30,7 +29,8 @@ from harness.scene.box import Box
 from harness.scene.hull import hull_of
 from harness.scene.launch import place
 from harness.scene.mesh import Mesh
-from harness.scene.scene import Scene, Shape
+from harness.scene.scene import Scene
+from harness.vocabulary import Response, Shape
 
 _RESPONSES: tuple[Response, ...] = ("reflect", "elastic", "none")
 

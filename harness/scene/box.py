@@ -7,9 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
-"""The six walls, in the order in which they answer."""
-
 
 @dataclass(frozen=True, eq=False)
 class Box:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 
@@ -12,8 +11,7 @@ from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import Hull
 from harness.scene.mesh import Mesh, Surface
-
-Shape = Literal["sphere", "hull", "mesh"]
+from harness.vocabulary import Shape
 
 
 @dataclass(frozen=True, eq=False)

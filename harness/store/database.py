@@ -22,7 +22,8 @@ from harness.store.connection import open_for_writing, told
 from harness.store.history import History
 from harness.store.lock import SweepLock
 from harness.store.recording import Recording, recorded, write
-from harness.store.records import PointRow, Status, VerdictKind, VerdictRow
+from harness.store.records import PointRow, VerdictKind, VerdictRow
+from harness.vocabulary import Status
 
 
 class Database:

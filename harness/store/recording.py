@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints, Pairs
 from harness.store.history import reading
-
-WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
+from harness.vocabulary import WALLS
 
 
 class Surface(NamedTuple):

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-Status = Literal["ok", "failed", "timeout", "memory", "crashed", "rejected"]
 VerdictKind = Literal["expectation", "claim"]
 
 

@@ -3,9 +3,10 @@ import pytest
 import trimesh
 
 from harness.scene.bodies import Bodies
-from harness.scene.box import WALLS, Box
+from harness.scene.box import Box
 from harness.scene.mesh_file import make_mesh
 from harness.scene.scene import Scene
+from harness.vocabulary import WALLS
 
 
 def bodies(sizes):

@@ -1,0 +1,99 @@
+"""The fixed words: what a user may write for a shape, a response or an algorithm, and what a method is named by.
+
+Every room may import this file; it imports nothing of the program. A new word is a line here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+
+Shape = Literal["sphere", "hull", "mesh"]
+"""What the narrow phase sees of a body: its bounding sphere, its convex hull, or its surface of triangles."""
+
+Query = Literal["collision"]
+"""What is asked of a pair of bodies at a frame."""
+
+Response = Literal["reflect", "elastic", "none"]
+"""What a hit does: mirror each velocity along the line of centres, pass an impulse by mass, nothing."""
+
+Status = Literal["ok", "failed", "timeout", "memory", "crashed", "rejected"]
+"""How a run ended."""
+
+WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
+"""The six walls of a box, in the order in which they answer."""
+
+
+@dataclass(frozen=True)
+class AlgorithmWord:
+    """An algorithm as far as its name alone tells.
+
+    Parameters
+    ----------
+    meaning : which questions it asks, and when
+    stepped : whether it looks at frames, `dt` apart; else it computes events, as exactly as `tolerance` says
+    own : whether the pairs are found by this program; else by the backend's own broad phase
+    """
+
+    meaning: str
+    stepped: bool = True
+    own: bool = True
+
+
+ALGORITHMS: dict[str, AlgorithmWord] = {
+    "brute-force": AlgorithmWord("every pair, every frame"),
+    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies"),
+    "tree": AlgorithmWord("pairs from a dynamic tree of axis-aligned boxes"),
+    "native": AlgorithmWord("the backend's own broad phase", own=False),
+    "predictive": AlgorithmWord(
+        "from event to event: the next collision of every body is computed, not stepped to", stepped=False
+    ),
+}
+
+if TYPE_CHECKING:
+    Algorithm: TypeAlias = str
+else:
+    Algorithm = Literal[tuple(ALGORITHMS)]
+
+OWN_BACKEND = "fcl"
+"""The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
+
+METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages", "dt")
+"""Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
+
+KNOBS = ("dt", "tolerance")
+"""Those of them that trade accuracy for time: the same method, set otherwise."""
+
+
+def algorithms_of(backend: str) -> tuple[str, ...]:
+    """The algorithms that a backend can be asked with; one that is not of this program has its own detection only."""
+    own = backend == OWN_BACKEND
+    return tuple(name for name, word in ALGORITHMS.items() if word.own == own)
+
+
+class MethodName(NamedTuple):
+    """What answers a run's question, by name: the noun under which runs, verdicts and ranks of a method are kept."""
+
+    backend: str
+    algorithm: str
+    shape: Shape
+    query: Query = "collision"
+
+    @classmethod
+    def of(cls, parameters: Mapping[str, Any]) -> MethodName:
+        """The method of a run with these leaves; databases of before there were queries know collision alone."""
+        query = parameters.get("query", "collision")
+        return cls(str(parameters["backend"]), str(parameters["algorithm"]), parameters["shape"], query)
+
+    @property
+    def pipeline(self) -> str:
+        """Backend and algorithm as a command takes them: "fcl/grid", and the backend alone for its own pipeline."""
+        return f"{self.backend}/{self.algorithm}" if ALGORITHMS[self.algorithm].own else self.backend
+
+    @property
+    def knob(self) -> str:
+        """The leaf that trades accuracy for time: "dt", "tolerance", or "" of a method that is exact."""
+        if ALGORITHMS[self.algorithm].stepped:
+            return "dt"
+        return "" if self.shape == "sphere" else "tolerance"
