@@ -46,18 +46,6 @@ class Backend(Protocol):
         """
 
 
-def counters(backend: Backend) -> Mapping[str, float]:
-    """What the backend has counted since it was loaded (`pair_tests`, `narrow_tests`); empty if it does not count."""
-    counted: Mapping[str, float] = getattr(backend, "counters", {})
-    return counted
-
-
-def assemble(backend: Backend, stages: Mapping[str, bool]) -> None:
-    """Tell a backend that can leave stages out, before it is loaded, which are forced on or off."""
-    if hasattr(backend, "stages"):
-        backend.stages = stages
-
-
 def units(backend: Backend) -> str:
     """In what lengths the backend tells its library of the scene; empty if it does not say."""
     return str(getattr(backend, "units", ""))

@@ -24,13 +24,12 @@ def names() -> list[str]:
     return sorted(_declared())
 
 
-def create(name: str, algorithm: str = "native") -> Backend:
+def create(name: str) -> Backend:
     """A new backend, not loaded yet.
 
     Parameters
     ----------
     name : as in `engine.backend`
-    algorithm : given to the backend, unless it is its own (`native`)
 
     Raises
     ------
@@ -42,8 +41,7 @@ def create(name: str, algorithm: str = "native") -> Backend:
         raise InputError(f'there is no backend "{name}"; there are {", ".join(sorted(declared))}')
     try:
         with silence():
-            made = declared[name].load()
-            backend: Backend = made() if algorithm == "native" else made(algorithm)
+            backend: Backend = declared[name].load()()
     except ImportError as error:
         raise InputError(f'backend "{name}" cannot be used: {_why(declared[name], error)}') from error
     return backend

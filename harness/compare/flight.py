@@ -11,11 +11,13 @@ from harness.compare.isolated import PATIENCE, Isolated, UnusableError
 from harness.compare.outcome import Comparison, Failure
 from harness.compare.poses import Pose
 from harness.compare.side_by_side import side_by_side
+from harness.methods.stages import Plan
+from harness.methods.stepped import SteppedMethod
+from harness.methods.stepping import Detector
 from harness.motion.hits import Trace
-from harness.motion.plan import make_plan
-from harness.motion.stepped import fly_stepped
+from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
-from harness.vocabulary import Response, Shape
+from harness.vocabulary import MethodName, Response
 
 
 def fly_both(
@@ -40,10 +42,8 @@ def fly_both(
         try:
             with Isolated(name, scene, patience) as asked:
                 flying = _Flying(name, asked)
-                plan = make_plan(scene, backend=name, algorithm="native", response=response)
-                flown = fly_stepped(
-                    scene, plan, flying, frames=frames, dt=dt, response=response, restitution=restitution, traced=True
-                )
+                law = MotionLaw(frames * dt, dt, response, restitution)
+                flown = flying.load(scene, flying.plan(scene, law)).fly(law, traced=True)
         except UnusableError as error:
             return Comparison(unsupported=[f"{name} cannot fly shape {scene.shape}: {error}"])
         except _FailedError as error:
@@ -58,21 +58,21 @@ class _FailedError(Exception):
     """The backend gave no answer; says why."""
 
 
-class _Flying:
-    """A backend in a process of its own, as a flight asks it."""
-
-    shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+class _Flying(SteppedMethod):
+    """A method whose detector is in a process of its own."""
 
     def __init__(self, name: str, asked: Isolated) -> None:
-        self.name, self._asked, self.call = name, asked, 0
+        super().__init__(MethodName.read(name, asked.shape))
+        self._asked, self.call = asked, 0
 
-    def tolerance(self, shape: Shape) -> float:
-        return self._asked.facts.tolerance
+    def finding(self, count: int) -> str:
+        return f"{self.name.backend} is asked in a process of its own"
 
-    def load(self, scene: Scene) -> None:
-        """It is loaded."""
+    def detector(self, scene: Scene, plan: Plan) -> Detector:
+        return self
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        """As a detector: its answer, or the failure that ends the flight."""
         self.call += 1
         answer = self._asked.pairs(Pose(f"frame {self.call}", positions, quaternions))
         if isinstance(answer, str):

@@ -67,6 +67,7 @@ class Isolated:
 
     def __init__(self, name: str, scene: Scene, patience: float = PATIENCE) -> None:
         self._name, self._scene, self._patience = name, scene, patience
+        self.shape = scene.shape
         self._process: multiprocessing.process.BaseProcess | None = None
 
     def __enter__(self) -> Isolated:

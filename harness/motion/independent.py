@@ -21,7 +21,7 @@ def largest_bracket(scene: Scene, contacts: Contacts) -> float:
     """The largest such time (s) over a sample of contacts, at most the contact's length; 0 without any contact."""
     import fcl  # only where a reference is made
 
-    from harness.narrowphase.fcl_objects import FclObjects
+    from harness.backends.fcl_objects import FclObjects
 
     bodies = FclObjects(scene)
     flight = Flight(scene.bodies, scene.box, folded=True, turning=True)

@@ -21,6 +21,7 @@ from harness.motion.hits import Trace
 from harness.motion.playback import positions_at
 from harness.motion.replayed import contacts_of, error_of
 from harness.runner.key import sources_hash
+from harness.runner.point import is_stepped
 from harness.runner.reference_cache import kept
 from harness.runner.setting import build_scene
 from harness.scene.box import Box
@@ -93,7 +94,7 @@ def _replayed(point: Point, mesh: Mesh | None, trace: Trace) -> dict[str, float]
     if len(found.errors):
         sizes = np.abs(found.errors)
         metrics |= {"time_error": float(np.median(sizes)), "time_error_95": float(np.quantile(sizes, 0.95))}
-    if point.engine.algorithm != "predictive" and found.hits:
+    if is_stepped(point) and found.hits:
         metrics |= _tunnelling(contacts.lengths[contacts.begins(until)], point.motion.dt, found.missed)
     return metrics
 

@@ -3,28 +3,19 @@
 import numpy as np
 import pytest
 
-from harness.backends.fcl import Fcl
 from harness.motion.course import folded_course
 from harness.motion.kinematics import Flight
-from harness.motion.plan import make_plan
-from harness.motion.predicted import fly_predicted
-from harness.motion.stepped import fly_stepped
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies, random_scene
+from tests.methods import flights
+from tests.methods.flights import frames_of
 
 DURATION, FRAMES = 3.0, 90
 
 
 def fly(scene, algorithm, response, recorded=True):
-    if algorithm == "predictive":
-        plan = make_plan(scene, backend="", algorithm=algorithm, response=response)
-        return fly_predicted(scene, plan, duration=DURATION, response=response, traced=True, recorded=recorded)
-    plan = make_plan(scene, backend="fcl", algorithm="brute-force", response=response)
-    backend = Fcl("brute-force")
-    backend.load(scene)
-    dt = DURATION / FRAMES
-    return fly_stepped(scene, plan, backend, frames=FRAMES, dt=dt, response=response, traced=True, recorded=recorded)
+    return flights.fly(scene, algorithm, frames_of(FRAMES, DURATION / FRAMES, response), recorded=recorded)
 
 
 def positions_at(course, time, count):

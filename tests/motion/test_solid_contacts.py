@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from harness.backends.fcl import Fcl
 from harness.motion.independent import largest_bracket
 from harness.motion.kinematics import Flight
 from harness.motion.solid_contacts import solid_contacts
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.methods.flights import detector
 
 SIDE = 1 / np.sqrt(3)
 TOLERANCE = 1e-10
@@ -45,12 +45,11 @@ def test_spinning_cubes_touch_at_a_moment_where_fcl_says_so(shape):
     scene = random_scene(shape, 8, 3.0, seed=4)
     found = solid_contacts(scene, 2.0, TOLERANCE)
     assert len(found) > 10
-    detector, flight = Fcl("grid"), Flight(scene.bodies, scene.box, folded=True, turning=True)
-    detector.load(scene)
+    asked, flight = detector(scene), Flight(scene.bodies, scene.box, folded=True, turning=True)
     for time in np.random.default_rng(0).uniform(0, 2.0, 100):
         flight.move_to(time)
         open_now = (found.onset <= time) & (time <= found.release)
-        expected = set(map(tuple, detector.pairs(flight.positions, flight.quaternions).tolist()))
+        expected = set(map(tuple, asked.pairs(flight.positions, flight.quaternions).tolist()))
         assert set(map(tuple, found.pairs[found.encounter[open_now]].tolist())) == expected
     assert largest_bracket(scene, found) < 1e-8
     late = found.onset > 0

@@ -10,10 +10,10 @@ import numpy as np
 
 from harness.arrays import Flags, Ints, Pairs
 from harness.measure.conservation import Conservation
+from harness.methods.penetration import Penetration
 from harness.motion.digest import EventDigest
 from harness.motion.hits import HitLog
 from harness.motion.kinematics import Flight
-from harness.narrowphase.penetration import Penetration
 from harness.scene.scene import Scene
 
 

@@ -5,16 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.backends.fcl import Fcl
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.methods.flights import detector
 
 
 def answers(scene, algorithm):
-    backend = Fcl(algorithm)
-    backend.load(scene)
-    return backend.pairs(scene.bodies.positions, scene.bodies.quaternions).tolist(), backend.counters
+    asked = detector(scene, algorithm)
+    return asked.pairs(scene.bodies.positions, scene.bodies.quaternions).tolist(), asked.counters
 
 
 @pytest.mark.parametrize("algorithm", ["grid", "tree"])

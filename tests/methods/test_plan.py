@@ -7,29 +7,26 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.backends.detection import NAMES
-from harness.backends.fcl import Fcl
-from harness.backends.stages import StageError
-from harness.motion.plan import make_plan
+from harness.methods.culled import DETECTION
+from harness.methods.stages import StageError
+from harness.methods.stepping import Stepping
+from harness.motion.law import MotionLaw
 from harness.motion.reach import SLACK, fastest, nobody_meets
-from harness.motion.stepped import fly_stepped
 from harness.scene.box import Box
 from harness.scene.mesh_file import make_mesh
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.methods.flights import detector, frames_of, method_for, planned
 from tests.narrowphase.meshes import mesh_named
 
 RESPONSES = ("reflect", "elastic", "none")
 
 
 def fly(scene, algorithm="grid", response="reflect", forced=None, frames=40, dt=1 / 30):
-    plan = make_plan(scene, backend="fcl", algorithm=algorithm, response=response, duration=frames * dt, forced=forced)
-    backend = Fcl(algorithm)
-    backend.stages = forced or {}
-    if plan.keeps("pairs"):
-        backend.load(scene)
-    detector = backend if plan.keeps("pairs") else None
-    return plan, fly_stepped(scene, plan, detector, frames=frames, dt=dt, response=response, traced=True)
+    law = frames_of(frames, dt, response)
+    method = method_for(scene, algorithm, forced=forced)
+    plan = method.plan(scene, law)
+    return plan, method.load(scene, plan).fly(law, traced=True)
 
 
 def story(outcome):
@@ -40,8 +37,8 @@ def story(outcome):
 
 
 def stages(scene, algorithm="grid", response="reflect", duration=10.0, forced=None):
-    plan = make_plan(scene, backend="fcl", algorithm=algorithm, response=response, duration=duration, forced=forced)
-    return {stage.name: stage for stage in plan.stages}
+    law = MotionLaw(duration, duration or 1.0, response)
+    return {stage.name: stage for stage in planned(scene, algorithm, law, forced=forced).stages}
 
 
 def two(gap, speed=0.0, side=100.0, **more):
@@ -97,14 +94,19 @@ def test_bodies_at_rest_are_looked_at_once_and_counted_as_if_in_every_frame(scen
         return
     asked = []
 
-    class Asked(Fcl):
+    class Asked:
+        def __init__(self):
+            self.detector = detector(scene, algorithm)
+
+        @property
+        def counters(self):
+            return self.detector.counters
+
         def pairs(self, positions, quaternions):
             asked.append(positions)
-            return super().pairs(positions, quaternions)
+            return self.detector.pairs(positions, quaternions)
 
-    backend = Asked(algorithm)
-    backend.load(scene)
-    again = fly_stepped(scene, plan, backend, frames=40, dt=1 / 30, response=response, traced=True)
+    again = Stepping(scene, plan, Asked()).fly(frames_of(40, 1 / 30, response), traced=True)
     assert len(asked) <= 3
     _, full = fly(scene, algorithm, response, {"motion": True, "pairs": True})
     exact = [name for name in full.metrics if "second" not in name]
@@ -215,7 +217,7 @@ def test_all_that_is_refused_is_said_at_once():
 
 
 def test_brute_force_can_be_made_to_leave_out_nothing():
-    for name in NAMES:
+    for name in DETECTION:
         if name != "fcl":
             with pytest.raises(StageError, match="brute force leaves nothing out"):
                 stages(random_scene("mesh", 8, 4.0), "brute-force", forced={name: True})

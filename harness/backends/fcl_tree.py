@@ -6,9 +6,10 @@ from typing import Any
 
 import fcl
 import numpy as np
+from numpy.typing import ArrayLike
 
-from harness.arrays import Floats, Pairs
-from harness.narrowphase.fcl_objects import FclObjects
+from harness.arrays import Pairs
+from harness.backends.fcl_objects import FclObjects
 from harness.scene.scene import Scene
 
 
@@ -37,7 +38,7 @@ class FclTree:
         self._tree.registerObjects(self._bodies.objects)
         self._tree.setup()
 
-    def close_pairs(self, positions: Floats) -> Pairs:
+    def close_pairs(self, positions: ArrayLike) -> Pairs:
         """Pairs of bodies whose bounding spheres touch.
 
         Parameters
@@ -49,7 +50,7 @@ class FclTree:
         (k, 2) int array
             i < j, sorted.
         """
-        self._bodies.place(positions, self._upright)
+        self._bodies.place(np.asarray(positions, np.float64), self._upright)
         self._tree.update()
         request, result, tests = self._request, fcl.CollisionResult(), 0
 

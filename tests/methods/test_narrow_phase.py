@@ -5,20 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.backends.fcl import Fcl
+from harness.methods.narrow_phase import overhang
 from harness.motion.kinematics import Flight
 from harness.narrowphase.gjk import MARGIN
-from harness.narrowphase.judges import overhang
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies
+from tests.methods.flights import detector, frames_of, method_for
 from tests.narrowphase.meshes import MESHES, crowd, mesh_named, turns
-
-
-def detector(scene, algorithm="grid"):
-    made = Fcl(algorithm)
-    made.load(scene)
-    return made
 
 
 def pairs(scene, algorithm="grid"):
@@ -165,9 +159,8 @@ def test_most_pairs_are_settled_without_fcl():
 
 def test_without_the_hull_axis_all_close_pairs_are_put_to_fcl():
     scene = crowd(mesh_named("pumpkin-1753.ply"), "mesh", 30, 2.5, 0)
-    made = Fcl("grid")
-    made.stages = {"hull_axis": False}
-    made.load(scene)
+    method = method_for(scene, "grid", forced={"hull_axis": False})
+    made = method.detector(scene, method.plan(scene, frames_of(1, 1.0)))
     answer = made.pairs(scene.bodies.positions, scene.bodies.quaternions)
     assert answer.tolist() == pairs(scene)
     assert made.counters["fcl_tests"] == made.counters["narrow_tests"] > len(answer)

@@ -1,4 +1,8 @@
-"""Stages of a pipeline: each kept or left out for a reason, and forced the other way only where no answer changes."""
+"""The plan of a run: the stages of its pipeline, each kept or left out for a reason.
+
+A pipeline is assembled from its plan, not switched on inside loops. Leaving a stage out never changes an event; where
+it would, the stage stays, and an experiment that forces it off (`engine.stages`) is refused.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +20,23 @@ class Stage:
     name: str
     kept: bool
     why: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run will do, in order, and what its user should be warned of."""
+
+    stages: tuple[Stage, ...]
+    warnings: tuple[str, ...] = ()
+
+    def keeps(self, name: str) -> bool:
+        """Whether there is a stage of this name, and it is kept."""
+        return any(stage.kept for stage in self.stages if stage.name == name)
+
+    @property
+    def kept(self) -> frozenset[str]:
+        """The names of the stages that are kept."""
+        return frozenset(stage.name for stage in self.stages if stage.kept)
 
 
 class StageError(InputError):
@@ -64,8 +85,8 @@ class Decisions:
         self.stages.append(Stage(name, wanted, why))
         return wanted
 
-    def finish(self) -> tuple[Stage, ...]:
-        """All stages.
+    def finish(self, warnings: tuple[str, ...] = ()) -> Plan:
+        """The plan of all stages that were decided on.
 
         Raises
         ------
@@ -78,19 +99,9 @@ class Decisions:
                 near = get_close_matches(name, names, 1)
                 hint = f'did you mean "{near[0]}"?' if near else f"there are {', '.join(names)}"
                 self._refusals.append((name, f'this pipeline has no stage "{name}"; {hint}'))
-        self.check()
-        return tuple(self.stages)
-
-    def check(self) -> None:
-        """Refuse what was refused until now.
-
-        Raises
-        ------
-        StageError
-            If that is anything.
-        """
         if self._refusals:
             raise StageError(self._refusals)
+        return Plan(tuple(self.stages), warnings)
 
 
 def _state(kept: bool) -> str:

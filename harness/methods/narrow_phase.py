@@ -1,16 +1,16 @@
-"""Who decides whether two close bodies touch: FCL alone, or kernels that leave to FCL only what they cannot prove."""
+"""Whether close bodies touch, by their exact shape: FCL alone, or kernels that leave to it what they cannot prove."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Protocol
 
-import fcl
 import numpy as np
 
 from harness.arrays import Flags, Floats, Pairs
+from harness.backends.fcl_pair_test import FclPairTest
+from harness.methods.stages import Plan
 from harness.narrowphase.containment import Containment
-from harness.narrowphase.fcl_objects import FclObjects
 from harness.narrowphase.gjk import MARGIN, OVERLAP, SEPARATE, UNDECIDED
 from harness.narrowphase.hull_pairs import HullPairs, Verdicts
 from harness.narrowphase.mesh_pairs import MeshPairs
@@ -25,12 +25,12 @@ ON_HULL = 1e-8
 SLIVER = 1e-10
 
 
-class Judge(Protocol):
+class NarrowPhase(Protocol):
     """Decides on close pairs, frame after frame, of the bodies of a scene."""
 
     @property
     def counters(self) -> Mapping[str, int]:
-        """What was counted over all frames: `narrow_tests`, and what the judge has besides."""
+        """What was counted over all frames: `narrow_tests`, and what else is counted."""
 
     def touching(self, close: Pairs, positions: Floats, quaternions: Floats) -> Pairs:
         """Those of the pairs that touch.
@@ -43,47 +43,42 @@ class Judge(Protocol):
         """
 
 
-class FclJudge:
+def narrow_phase(scene: Scene, plan: Plan) -> NarrowPhase:
+    """Of hulls or meshes, as the plan has it."""
+    if not plan.keeps("hull_axis"):
+        return FclNarrowPhase(scene)
+    if scene.shape == "hull":
+        return HullNarrowPhase(scene)
+    return MeshNarrowPhase(scene, crossing=plan.keeps("crossing"), containment=plan.keeps("containment"))
+
+
+class FclNarrowPhase:
     """Puts every pair to FCL, moving only the bodies in them."""
 
     def __init__(self, scene: Scene) -> None:
-        self._bodies = FclObjects(scene)
-        self._request = fcl.CollisionRequest()
-        self._tests = 0
+        self._fcl = FclPairTest(scene)
 
     @property
     def counters(self) -> dict[str, int]:
-        return {"narrow_tests": self._tests, "fcl_tests": self._tests}
+        return {"narrow_tests": self._fcl.tests, "fcl_tests": self._fcl.tests}
 
     def touching(self, close: Pairs, positions: Floats, quaternions: Floats) -> Pairs:
-        return close[self.verdicts(close, positions, quaternions)] if len(close) else close
-
-    def verdicts(self, close: Pairs, positions: Floats, quaternions: Floats) -> Flags:
-        """(k,) bool array: which pairs touch."""
-        self._tests += len(close)
-        self._bodies.place(positions, quaternions, np.unique(close))
-        objects, request = self._bodies.objects, self._request
-        # A result is reused because making one costs as much as a far pair, but for one frame only: it keeps every
-        # contact it was ever given, and its own verdict is sticky. What `collide` returns is the pair's verdict.
-        result = fcl.CollisionResult()
-        verdicts = [fcl.collide(objects[i], objects[j], request, result) for i, j in close.tolist()]
-        return np.array(verdicts, np.bool_)
+        return close[self._fcl.verdicts(close, positions, quaternions)] if len(close) else close
 
 
-class HullJudge:
+class HullNarrowPhase:
     """Settles hulls in a kernel, and puts to FCL only pairs nearer to touching than rounding can tell."""
 
     def __init__(self, scene: Scene) -> None:
         assert scene.mesh is not None, "hulls come from a mesh"
-        self._fcl = FclJudge(scene)
+        self._fcl = FclPairTest(scene)
         self._places = Places(scene.bodies.sizes)
         self._hulls = HullPairs(scene.mesh.hull, MARGIN)
         self._tests = 0
 
     @property
     def counters(self) -> dict[str, int]:
-        left = self._fcl.counters["fcl_tests"]
-        return {"narrow_tests": self._tests, "hull_searches": self._hulls.searches, "fcl_tests": left}
+        return {"narrow_tests": self._tests, "hull_searches": self._hulls.searches, "fcl_tests": self._fcl.tests}
 
     def touching(self, close: Pairs, positions: Floats, quaternions: Floats) -> Pairs:
         if not len(close):
@@ -98,7 +93,7 @@ class HullJudge:
         return touching
 
 
-class MeshJudge:
+class MeshNarrowPhase:
     """Drops meshes whose hulls are proved separate, and settles the surfaces of the others; FCL has what is left.
 
     Parameters
@@ -115,7 +110,7 @@ class MeshJudge:
     def __init__(self, scene: Scene, *, crossing: bool = True, containment: bool = True) -> None:
         assert scene.mesh is not None, "meshes come from a file"
         sizes = scene.bodies.sizes
-        self._fcl = FclJudge(scene)
+        self._fcl = FclPairTest(scene)
         self._places = Places(sizes)
         self._hulls = HullPairs(scene.mesh.hull, ON_HULL if scene.mesh.convex else MARGIN + overhang(scene.mesh))
         self._settle = MeshPairs(scene.mesh).settle if crossing else _all_open
@@ -132,7 +127,7 @@ class MeshJudge:
             "narrow_tests": self._tests,
             "hull_tests": self._hull_tests,
             "hull_searches": self._hulls.searches,
-            "fcl_tests": self._fcl.counters["fcl_tests"],
+            "fcl_tests": self._fcl.tests,
             "contained_pairs": self._contained,
         }
 

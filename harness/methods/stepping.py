@@ -8,24 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from harness.arrays import Flags, Ints, Pairs
-from harness.backends.protocol import Backend, counters
+from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.measure.clocks import Clock
 from harness.measure.conservation import energy
+from harness.methods.observer import Folds, Observer, Onsets
+from harness.methods.stages import Plan
 from harness.motion.course import CourseLog, folded_course
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Flight
-from harness.motion.observer import Folds, Observer, Onsets
-from harness.motion.plan import Plan
+from harness.motion.law import MotionLaw
 from harness.motion.response import Answers
 from harness.motion.soundness import refuse_lost
 from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
-from harness.vocabulary import Response
 
 PHASES = ("pair_seconds", "response_seconds", "box_seconds")
 
@@ -52,80 +52,78 @@ class _Frame:
 _Step = tuple[str, Callable[[_Frame], None]]
 
 
-def fly_stepped(
-    scene: Scene,
-    plan: Plan,
-    backend: Backend | None,
-    *,
-    frames: int,
-    dt: float,
-    response: Response,
-    restitution: float = 1.0,
-    traced: bool = False,
-    recorded: bool = False,
-) -> Outcome:
-    """Fly a scene in frames at k dt, k = 1 … frames.
+class Detector(Protocol):
+    """Finds all touching pairs of a scene at given poses; a loaded backend is one."""
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        """All touching pairs, (k, 2), i < j, sorted; positions (n, 3) in m, quaternions (n, 4) unit, w x y z."""
+
+
+class Stepping:
+    """The plan of a stepped run, assembled: frames at k dt, k = 1 … frames.
 
     Parameters
     ----------
     scene : Scene
     plan : Plan of this scene
-    backend : loaded with the scene; None where the plan leaves pairs out
-    frames, dt : number and length (s) of the frames
-    response, restitution : see `harness.motion.response`
-    traced : keep every hit
-    recorded : keep the course of every body
-
-    Returns
-    -------
-    Outcome
-        With the counters, clocks and errors of a stepped run.
+    detector : loaded with the scene; None where the plan leaves pairs out
     """
-    flight = Flight(scene.bodies, scene.box, folded=response == "none", turning=plan.keeps("orientations"))
-    observer = Observer(scene, flight, penetration=plan.keeps("penetration"), traced=traced)
-    answers = None if response == "none" else Answers(scene.bodies.masses, response, restitution)
-    course = CourseLog(flight.positions, flight.velocities) if recorded and answers else None
-    steps = _steps(scene, plan, flight, backend, answers)
-    look = _look(observer, flight, answers, course)
-    clock = Clock(*PHASES)
 
-    def fly(number: int) -> _Frame:
-        frame = _Frame(number * dt, _NO_PAIRS, _NO_HITS, _NO_WALLS)
-        clock.start()
-        for phase, step in steps:
-            step(frame)
-            clock.lap(phase)
-        look(frame)
-        return frame
+    def __init__(self, scene: Scene, plan: Plan, detector: Detector | None) -> None:
+        self._scene, self._plan, self._detector = scene, plan, detector
 
-    if plan.keeps("motion"):
-        for number in range(1, frames + 1):
-            fly(number)
-        tests = _pair_counters(backend)
-    else:
-        tests = _stand(fly, frames, observer, backend)
+    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+        """Fly the scene once, from its start: the counters, clocks and errors of a stepped run.
 
-    refuse_lost(flight.positions, flight.velocities, frames * dt)
-    counted: dict[str, float] = {
-        "frames": frames,
-        **tests,
-        "box_tests": 6 * len(scene.bodies) * frames if plan.keeps("walls") else 0,
-        "pair_hits": observer.pair_hits,
-        "pair_contacts": observer.pair_contacts,
-        "box_hits": observer.wall_hits,
-        "events": observer.pair_hits + observer.wall_hits,
-    }
-    end = frames * dt
-    metrics = {
-        **counted,
-        **_rates(counted, len(scene.bodies), frames, end),
-        **_clock_metrics(clock, frames, end),
-        **_errors(observer, answers, plan),
-    }
-    trace = _trace(scene, flight, observer, end, counted) if traced else None
-    if course is not None:
-        return Outcome(metrics, trace, course.course())
-    return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
+        Parameters
+        ----------
+        law : MotionLaw
+        traced : keep every hit
+        """
+        scene, plan, detector = self._scene, self._plan, self._detector
+        folded, recorded = law.response == "none", plan.keeps("recording")
+        flight = Flight(scene.bodies, scene.box, folded=folded, turning=plan.keeps("orientations"))
+        observer = Observer(scene, flight, penetration=plan.keeps("penetration"), traced=traced)
+        answers = None if law.response == "none" else Answers(scene.bodies.masses, law.response, law.restitution)
+        course = CourseLog(flight.positions, flight.velocities) if recorded and answers else None
+        steps = _steps(scene, plan, flight, detector, answers)
+        look = _look(observer, flight, answers, course)
+        clock = Clock(*PHASES)
+
+        def fly(number: int) -> _Frame:
+            frame = _Frame(number * law.dt, _NO_PAIRS, _NO_HITS, _NO_WALLS)
+            clock.start()
+            for phase, step in steps:
+                step(frame)
+                clock.lap(phase)
+            look(frame)
+            return frame
+
+        if plan.keeps("motion"):
+            tests = _every_frame(fly, law.frames, detector)
+        else:
+            tests = _first_frames(fly, law.frames, observer, detector)
+        end = law.frames * law.dt
+        refuse_lost(flight.positions, flight.velocities, end)
+        counted: dict[str, float] = {
+            "frames": law.frames,
+            **tests,
+            "box_tests": 6 * len(scene.bodies) * law.frames if plan.keeps("walls") else 0,
+            "pair_hits": observer.pair_hits,
+            "pair_contacts": observer.pair_contacts,
+            "box_hits": observer.wall_hits,
+            "events": observer.pair_hits + observer.wall_hits,
+        }
+        metrics = {
+            **counted,
+            **_rates(counted, len(scene.bodies), law.frames, end),
+            **_clock_metrics(clock, law.frames, end),
+            **_errors(observer, answers, plan),
+        }
+        trace = _trace(scene, flight, observer, end, counted) if traced else None
+        if course is not None:
+            return Outcome(metrics, trace, course.course())
+        return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
 
 
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
@@ -133,15 +131,15 @@ _NO_HITS: Flags = np.empty(0, np.bool_)
 _NO_WALLS: Flags = np.empty((0, 6), np.bool_)
 
 
-def _steps(scene: Scene, plan: Plan, flight: Flight, backend: Backend | None, answers: Answers | None) -> list[_Step]:
+def _steps(scene: Scene, plan: Plan, flight: Flight, detector: Detector | None, answers: Answers | None) -> list[_Step]:
     """The steps of a frame that the plan keeps."""
 
     def move(frame: _Frame) -> None:
         flight.move_to(frame.time)
 
     steps: list[_Step] = [("pair_seconds", move)]
-    if backend is not None:
-        detect = backend.pairs
+    if detector is not None:
+        detect = detector.pairs
 
         def move_and_detect(frame: _Frame) -> None:
             flight.move_to(frame.time)
@@ -202,16 +200,25 @@ def _recorded(look: Callable[[_Frame], None], course: CourseLog, flight: Flight)
     return look_and_keep
 
 
-def _stand(fly: Callable[[int], _Frame], frames: int, observer: Observer, backend: Backend | None) -> dict[str, float]:
-    """Bodies that rest: frames until two in a row have asked for the same work, which stand for all that follow.
+def _every_frame(fly: Callable[[int], _Frame], frames: int, detector: Detector | None) -> dict[str, float]:
+    """Fly all frames; the counters of the detector."""
+    for number in range(1, frames + 1):
+        fly(number)
+    return _pair_counters(detector)
 
-    Returns the counters of the backend as if every frame had been asked for.
+
+def _first_frames(
+    fly: Callable[[int], _Frame], frames: int, observer: Observer, detector: Detector | None
+) -> dict[str, float]:
+    """Bodies at rest: frames until two in a row have asked for the same work, which stand for all that follow.
+
+    Returns the counters of the detector as if every frame had been asked for.
     """
-    before = _pair_counters(backend)
+    before = _pair_counters(detector)
     last: dict[str, float] = {}
     for number in range(1, frames + 1):
         frame = fly(number)
-        now = _pair_counters(backend)
+        now = _pair_counters(detector)
         work = {name: now[name] - before.get(name, 0) for name in now}
         before = now
         if work == last:
@@ -241,8 +248,9 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:
     return hulls
 
 
-def _pair_counters(backend: Backend | None) -> dict[str, float]:
-    return {"pair_tests": 0, "narrow_tests": 0} if backend is None else dict(counters(backend))
+def _pair_counters(detector: Detector | None) -> dict[str, float]:
+    """`pair_tests`, `narrow_tests` and what else the detector has counted so far, if it counts."""
+    return {"pair_tests": 0, "narrow_tests": 0} if detector is None else dict(getattr(detector, "counters", {}))
 
 
 def _rates(counted: Mapping[str, float], bodies: int, frames: int, simulated: float) -> dict[str, float]:

@@ -5,23 +5,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.backends import registry
-from harness.motion.plan import make_plan
-from harness.motion.stepped import fly_stepped
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies, random_scene
+from tests.methods import flights
+from tests.methods.flights import frames_of
 
 
 def fly(scene, *, frames=100, dt=1 / 60, response="reflect", backend="fcl", restitution=1.0, forced=None):
-    algorithm = "brute-force" if backend == "fcl" else "native"
-    plan = make_plan(scene, backend=backend, algorithm=algorithm, response=response, forced=forced)
-    detector = registry.create(backend)
-    detector.load(scene)
-    return fly_stepped(
-        scene, plan, detector if plan.keeps("pairs") else None,
-        frames=frames, dt=dt, response=response, restitution=restitution, traced=True,
-    )  # fmt: skip
+    law = frames_of(frames, dt, response, restitution)
+    return flights.fly(scene, flights.default_algorithm(backend), law, backend=backend, forced=forced)
 
 
 def spheres(positions, velocities, side=10.0, **more):

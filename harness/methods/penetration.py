@@ -49,7 +49,7 @@ class _HullDepth:
     def __init__(self, scene: Scene) -> None:
         import fcl  # only runs that measure hulls need it
 
-        from harness.narrowphase.fcl_objects import FclObjects
+        from harness.backends.fcl_objects import FclObjects
 
         self._distance = fcl.distance
         self._result = fcl.DistanceResult
