@@ -58,3 +58,6 @@ class Fcl:
         objects = self._bodies.objects
         first = chain.from_iterable(map(repeat, objects, range(len(objects) - 1, -1, -1)))
         return first, chain.from_iterable(objects[i:] for i in range(1, len(objects)))
+
+
+BACKEND = Fcl

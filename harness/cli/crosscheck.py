@@ -15,7 +15,7 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from harness.backends.registry import missing
+from harness.backends.registry import missing, packages
 from harness.compare.comparison import compare
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.flight import fly_both
@@ -122,14 +122,14 @@ def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict
     return document(found, rows, {}) | {
         "title": experiment.title,
         "shown": [shown_case(row) for row in distinct.values()],
-        "versions": package_versions(),
+        "versions": package_versions(packages()),
     }
 
 
 def key_of(experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent) -> str:
     """Of two comparisons with the same key the second would find nothing new."""
     points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
-    content = json.dumps([points, pair, repr(extent), package_versions()])
+    content = json.dumps([points, pair, repr(extent), package_versions(packages())])
     return hashlib.sha256(content.encode()).hexdigest()
 
 

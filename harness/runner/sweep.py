@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
-from harness.backends.registry import missing
+from harness.backends.registry import missing, packages
 from harness.errors import InputError
 from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
@@ -178,7 +178,7 @@ def sweep(
     work = work_of(experiments, meshes, database.history, command=command, choice=choice or Choice())
     machine = machine_facts()
     machine["fingerprint"] = fingerprint(machine)
-    number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions())
+    number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions(packages()))
     listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
     summary = Summary(work.schedule.kept, lacking=work.lacking)
     watch.begin(work.schedule.jobs, work.estimate)
