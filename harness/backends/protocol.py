@@ -1,7 +1,7 @@
 """What a backend is: a complete detector, asked for all touching pairs at given poses.
 
-A file of this folder adds one by a class of this form and a line `BACKEND = Class`; another package by an entry point in
-the group `harness.backends`. It is then named by `engine.backend`, with its own pipeline as the algorithm. What the
+A file of this folder adds one by a class of this form and a line `BACKEND = Class`; another package by an entry point
+in the group `harness.backends`. It is then named by `engine.backend`, with its own pipeline as the algorithm. What the
 functions below ask for, a backend may have beside that.
 """
 
