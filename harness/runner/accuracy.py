@@ -14,12 +14,12 @@ import numpy as np
 from harness.arrays import Floats
 from harness.experiment.experiment import Point
 from harness.experiment.schema import EngineSpec
-from harness.measure.contacts import Contacts
-from harness.measure.divergence import first_divergence
-from harness.measure.matching import match
 from harness.motion.hits import Trace
-from harness.motion.playback import positions_at
-from harness.motion.replayed import contacts_of, error_of
+from harness.reference.contacts import Contacts
+from harness.reference.divergence import first_divergence
+from harness.reference.matching import match
+from harness.reference.positions_from_hits import positions_at
+from harness.reference.scene_contacts import contacts_of, error_of
 from harness.runner.key import sources_hash
 from harness.runner.reference_cache import kept
 from harness.runner.setting import build_scene

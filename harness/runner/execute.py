@@ -16,11 +16,11 @@ from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.motion.hits import Outcome, Trace
-from harness.motion.invariance import invariance
 from harness.motion.plan import Plan, make_plan
 from harness.motion.predicted import fly_predicted
 from harness.motion.soundness import NotANumberError
 from harness.motion.stepped import fly_stepped
+from harness.reference.invariance import invariance
 from harness.runner import accuracy
 from harness.runner.recording import recording_of
 from harness.runner.repetition import fly_long_enough

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.motion.encounters import sphere_contacts
 from harness.motion.kinematics import Flight
-from harness.motion.precise import largest_error
+from harness.reference.sphere_contacts import sphere_contacts
+from harness.reference.sphere_onset_error import largest_error
 from harness.scene.box import Box
 from tests.conftest import make_bodies
 from tests.motion.slow_reference import PAIR, Reference

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.arrays import Floats
-from harness.measure.contacts import Contacts
 from harness.motion.kinematics import Flight
+from harness.reference.contacts import Contacts
 from harness.scene.scene import Scene
 
 SAMPLE = 64

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from harness.motion.plan import make_plan
-from harness.motion.playback import positions_at
 from harness.motion.predicted import fly_predicted
+from harness.reference.positions_from_hits import positions_at
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from harness.measure.contacts import Contacts
-from harness.motion.encounters import sphere_contacts
-from harness.motion.independent import largest_bracket
-from harness.motion.precise import largest_error
-from harness.motion.solid_contacts import solid_contacts
+from harness.reference.contacts import Contacts
+from harness.reference.solid_contacts import solid_contacts
+from harness.reference.solid_onset_error import largest_bracket
+from harness.reference.sphere_contacts import sphere_contacts
+from harness.reference.sphere_onset_error import largest_error
 from harness.scene.scene import Scene
 
 

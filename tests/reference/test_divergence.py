@@ -4,7 +4,7 @@ from math import inf
 
 import numpy as np
 
-from harness.measure.divergence import first_divergence
+from harness.reference.divergence import first_divergence
 
 
 def events(*found):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from harness.backends.fcl import Fcl
-from harness.motion.independent import largest_bracket
 from harness.motion.kinematics import Flight
-from harness.motion.solid_contacts import solid_contacts
+from harness.reference.solid_contacts import solid_contacts
+from harness.reference.solid_onset_error import largest_bracket
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene

@@ -9,8 +9,8 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from harness.measure.contacts import Contacts
 from harness.motion.kinematics import Flight
+from harness.reference.contacts import Contacts
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 

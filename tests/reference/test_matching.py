@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.measure.contacts import Contacts, of_spheres
-from harness.measure.matching import match
+from harness.reference.contacts import Contacts, of_spheres
+from harness.reference.matching import match
 
 
 def spheres(*contacts, duration=10.0):

@@ -1,6 +1,6 @@
 """Which reported hit is which contact of the reference: one to one, and in order.
 
-A hit belongs to the encounter of its pair (see `harness.measure.contacts`) in whose time it falls; a hit outside of
+A hit belongs to the encounter of its pair (see `harness.reference.contacts`) in whose time it falls; a hit outside of
 every encounter of its pair is extra. Within an encounter the hits and the contacts, both in the order of time, are
 matched one to one so that
 
@@ -23,7 +23,7 @@ import numpy as np
 
 from harness.arrays import Floats, Ints, Pairs
 from harness.kernel import kernel
-from harness.measure.contacts import Contacts
+from harness.reference.contacts import Contacts
 
 # Times of two methods that differ by so little, of the duration or of the encounter, differ by rounding.
 ROUNDING, SHARE = 1e-13, 1e-6

@@ -16,8 +16,8 @@ import numpy as np
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.kernel import kernel
-from harness.measure.contacts import Contacts, of_spheres
 from harness.motion.kinematics import Flight
+from harness.reference.contacts import Contacts, of_spheres
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
