@@ -23,7 +23,7 @@ from harness.narrowphase.hull_pairs import HullPairs
 from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.penetration import Penetration
 from harness.narrowphase.placement import Places
-from harness.runner import accuracy
+from harness.reference.warm_up import warm_up_reference
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import hull_of
@@ -119,15 +119,15 @@ def _meshes_predicted() -> None:
 
 
 def _sphere_reference() -> None:
-    accuracy.warm_up(_two("sphere"))
+    warm_up_reference(_two("sphere"))
 
 
 def _hull_reference() -> None:
-    accuracy.warm_up(_two("hull"))
+    warm_up_reference(_two("hull"))
 
 
 def _mesh_reference() -> None:
-    accuracy.warm_up(_two("mesh"))
+    warm_up_reference(_two("mesh"))
 
 
 class _Piece(NamedTuple):

@@ -5,6 +5,7 @@ import pytest
 
 from harness.motion.plan import make_plan
 from harness.motion.predicted import fly_predicted
+from harness.reference.events import Events
 from harness.reference.positions_from_hits import positions_at
 from harness.scene.box import Box
 from harness.scene.scene import Scene
@@ -22,7 +23,7 @@ def test_the_hits_of_a_run_tell_where_its_bodies_were(response, restitution):
     trace = fly_predicted(scene, plan, duration=2.0, **fly).trace
     assert len(trace.times) > 50
     times = np.array([0.5, 1.0, 2.0])
-    found = positions_at(times, bodies, trace, response, restitution)
+    found = positions_at(times, bodies, Events.of(trace), response, restitution)
     for time, positions in zip(times, found, strict=True):
         flown = fly_predicted(scene, plan, duration=time, **fly).trace
         np.testing.assert_allclose(positions, flown.positions, rtol=0, atol=1e-10)
