@@ -20,14 +20,15 @@ KNOWS = {
     "broadphase": {"scene"},
     "backends": {"scene", "narrowphase"},
     "measure": {"experiment", "scene"},
-    "motion": KERNELS | {"backends", "measure"},
-    "methods": FLIGHT,
+    "motion": KERNELS | {"measure"},
+    "reference": KERNELS | {"backends", "measure", "motion"},
+    "methods": KERNELS | {"backends", "measure", "motion"},
     "store": set(),
     "compare": FLIGHT,
-    "runner": FLIGHT | {"experiment", "store"},
+    "runner": FLIGHT | {"experiment", "reference", "store"},
     "replay": {"store"},
     "report": {"store", "measure", "replay"},
-    "cli": FLIGHT | {"experiment", "store", "compare", "runner", "replay", "report"},
+    "cli": FLIGHT | {"experiment", "reference", "store", "compare", "runner", "replay", "report"},
 }
 LIBRARIES = {"fcl", "pybullet", "coal", "mujoco", "trimesh"}
 

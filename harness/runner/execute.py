@@ -14,9 +14,9 @@ from harness.measure.clocks import Clock
 from harness.methods.method import Method
 from harness.methods.stages import Plan
 from harness.motion.hits import Trace
-from harness.motion.invariance import invariance
 from harness.motion.law import MotionLaw
 from harness.motion.soundness import NotANumberError
+from harness.reference.invariance import invariance
 from harness.runner import accuracy
 from harness.runner.point import is_stepped, law_of, method_of_point
 from harness.runner.recording import recording_of

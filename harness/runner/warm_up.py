@@ -10,6 +10,7 @@ import numpy as np
 from harness.experiment.experiment import Point
 from harness.methods.method import WarmUp
 from harness.methods.sample import two_bodies
+from harness.reference.warm_up import warm_up_reference
 from harness.runner import accuracy
 from harness.runner.point import method_of_point
 from harness.scene.box import Box
@@ -54,4 +55,4 @@ def _place() -> None:
 
 
 def _refer(shape: Shape) -> None:
-    accuracy.warm_up(two_bodies(shape))
+    warm_up_reference(two_bodies(shape))

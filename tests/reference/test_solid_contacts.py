@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from harness.motion.independent import largest_bracket
 from harness.motion.kinematics import Flight
-from harness.motion.solid_contacts import solid_contacts
+from harness.reference.solid_contacts import solid_contacts
+from harness.reference.solid_onset_error import solid_onset_error
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
@@ -51,7 +51,7 @@ def test_spinning_cubes_touch_at_a_moment_where_fcl_says_so(shape):
         open_now = (found.onset <= time) & (time <= found.release)
         expected = set(map(tuple, asked.pairs(flight.positions, flight.quaternions).tolist()))
         assert set(map(tuple, found.pairs[found.encounter[open_now]].tolist())) == expected
-    assert largest_bracket(scene, found) < 1e-8
+    assert solid_onset_error(scene, found) < 1e-8
     late = found.onset > 0
     found.onset[late] += 1e-5
-    assert largest_bracket(scene, found) >= 1e-5
+    assert solid_onset_error(scene, found) >= 1e-5

@@ -1,7 +1,7 @@
-"""How far the computed contacts of hulls and surfaces are right: a sample of them, put to FCL around the onset.
+"""How wrong the computed onsets of hulls and surfaces are: a sample of them, put to FCL around the onset.
 
-FCL tells whether two bodies touch at a moment, by other means than those that found the contact. The error of an onset
-is bounded by the least time before which FCL sees the bodies apart and after which it sees them touch.
+FCL tells whether two bodies touch at a moment, by other means than those that found the contact. An onset is off by at
+most the time before which FCL finds the bodies apart and after which it finds them touching.
 """
 
 from __future__ import annotations
@@ -9,16 +9,23 @@ from __future__ import annotations
 import numpy as np
 
 from harness.arrays import Floats
-from harness.measure.contacts import Contacts
 from harness.motion.kinematics import Flight
+from harness.reference.contacts import Contacts
 from harness.scene.scene import Scene
 
 SAMPLE = 64
-FIRST, FACTOR = 1e-14, 4.0  # of the duration
+# The times tried: the first, of the duration, and the factor from one to the next.
+FIRST, FACTOR = 1e-14, 4.0
 
 
-def largest_bracket(scene: Scene, contacts: Contacts) -> float:
-    """The largest such time (s) over a sample of contacts, at most the contact's length; 0 without any contact."""
+def solid_onset_error(scene: Scene, contacts: Contacts) -> float:
+    """The largest such time (s) over a sample of contacts, at most the contact's length; 0 without any contact.
+
+    Parameters
+    ----------
+    scene : of shape `hull` or `mesh`
+    contacts : of the scene
+    """
     import fcl  # only where a reference is made
 
     from harness.backends.fcl_objects import FclObjects
@@ -36,10 +43,10 @@ def largest_bracket(scene: Scene, contacts: Contacts) -> float:
     for contact in _chosen(contacts.onset):
         i, j = contacts.pairs[contacts.encounter[contact]].tolist()
         onset, length = float(contacts.onset[contact]), float(contacts.lengths[contact])
-        wait = FIRST * contacts.duration
-        while wait < length and not (touching(i, j, onset + wait) and not touching(i, j, onset - wait)):
-            wait *= FACTOR
-        worst = max(worst, min(wait, length))
+        offset = FIRST * contacts.duration
+        while offset < length and not (touching(i, j, onset + offset) and not touching(i, j, onset - offset)):
+            offset *= FACTOR
+        worst = max(worst, min(offset, length))
     return worst
 
 

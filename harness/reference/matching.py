@@ -1,6 +1,6 @@
 """Which reported hit is which contact of the reference: one to one, and in order.
 
-A hit belongs to the encounter of its pair (see `harness.measure.contacts`) in whose time it falls; a hit outside of
+A hit belongs to the encounter of its pair (see `harness.reference.contacts`) in whose time it falls; a hit outside of
 every encounter of its pair is extra. Within an encounter the hits and the contacts, both in the order of time, are
 matched one to one so that
 
@@ -23,7 +23,7 @@ import numpy as np
 
 from harness.arrays import Floats, Ints, Pairs
 from harness.kernel import kernel
-from harness.measure.contacts import Contacts
+from harness.reference.contacts import Contacts
 
 # Times of two methods that differ by so little, of the duration or of the encounter, differ by rounding.
 ROUNDING, SHARE = 1e-13, 1e-6
@@ -31,11 +31,11 @@ ROUNDING, SHARE = 1e-13, 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Matching:
-    """What became of the reference's hits, and of the reported ones.
+    """How many of the reference's hits and of the reported ones are matched.
 
     Parameters
     ----------
-    hits : number of the reference's hits: contacts that begin while the method watches
+    hits : number of the reference's hits: contacts that begin before the method's run ends
     missed : of these, those without a report
     extra : reports without a contact
     errors : (k,) float array, s: reported time - onset, of the matched hits in the order of the contacts
@@ -65,7 +65,13 @@ def match(contacts: Contacts, times: Floats, pairs: Pairs, until: float) -> Matc
     contacts : of the reference
     times : (h,) float array, s; when a hit was reported
     pairs : (h, 2) int array, i < j; between whom
-    until : s; how long the method watched. Contacts that begin later, and hits after the reference's end, do not count.
+    until : s; the end of the method's run. Contacts that begin later, and hits after the reference's end, do not count.
+
+    >>> pair, onset = np.array([0, 1]), np.array([1.0, 4.0])
+    >>> contacts = Contacts.of_spheres(10.0, np.array([pair, pair]), onset, onset + 0.5)
+    >>> found = match(contacts, np.array([1.25]), np.array([pair]), until=10.0)
+    >>> found.hits, found.missed, found.extra, found.errors.tolist()
+    (2, 1, 0, [0.25])
     """
     seen = times <= contacts.duration * (1.0 + ROUNDING)
     times, pairs = times[seen], pairs[seen]
@@ -73,13 +79,13 @@ def match(contacts: Contacts, times: Floats, pairs: Pairs, until: float) -> Matc
     times, pairs = times[order], pairs[order]
     slack = ROUNDING * contacts.duration
     margins = slack + SHARE * (contacts.end - contacts.begin)
-    home = np.full(len(times), -1, np.int64)
-    _assign(contacts.pairs, contacts.begin - margins, contacts.end + margins, pairs, times, home)
-    settled, partner = np.flatnonzero(home >= 0), np.full(len(contacts), -1, np.int64)
-    _match(contacts.encounter, contacts.onset, contacts.release + slack, home[settled], times[settled], partner)
-    matched = partner >= 0
-    counted = contacts.begins(until)
-    reported = times[settled][partner[counted & matched]]
+    encounter_of = np.full(len(times), -1, np.int64)
+    _assign(contacts.pairs, contacts.begin - margins, contacts.end + margins, pairs, times, encounter_of)
+    inside, hit_of = np.flatnonzero(encounter_of >= 0), np.full(len(contacts), -1, np.int64)
+    _match(contacts.encounter, contacts.onset, contacts.release + slack, encounter_of[inside], times[inside], hit_of)
+    matched = hit_of >= 0
+    counted = contacts.begin_until(until)
+    reported = times[inside][hit_of[counted & matched]]
     return Matching(
         hits=int(np.count_nonzero(counted)),
         missed=int(np.count_nonzero(counted & ~matched)),
@@ -89,41 +95,41 @@ def match(contacts: Contacts, times: Floats, pairs: Pairs, until: float) -> Matc
 
 
 @kernel
-def _assign(whose: Pairs, begin: Floats, end: Floats, pairs: Pairs, times: Floats, home: Ints) -> None:
-    """The encounter of each hit, or -1. Encounters and hits are sorted by pair and time."""
+def _assign(met: Pairs, begin: Floats, end: Floats, pairs: Pairs, times: Floats, encounter_of: Ints) -> None:
+    """The encounter of each hit, or -1. Encounters, of the pairs `met`, and hits are sorted by pair and time."""
     e = 0
     for h in range(len(times)):
         i, j = pairs[h]
         while e < len(begin) and (
-            whose[e, 0] < i or (whose[e, 0] == i and (whose[e, 1] < j or (whose[e, 1] == j and end[e] < times[h])))
+            met[e, 0] < i or (met[e, 0] == i and (met[e, 1] < j or (met[e, 1] == j and end[e] < times[h])))
         ):
             e += 1
-        if e < len(begin) and whose[e, 0] == i and whose[e, 1] == j and begin[e] <= times[h]:
-            home[h] = e
+        if e < len(begin) and met[e, 0] == i and met[e, 1] == j and begin[e] <= times[h]:
+            encounter_of[h] = e
 
 
 @kernel
-def _match(encounter: Ints, onset: Floats, release: Floats, home: Ints, times: Floats, partner: Ints) -> None:
-    """Encounter by encounter; `partner` becomes the hit of each contact, or stays -1. All hits have a home."""
+def _match(encounter: Ints, onset: Floats, release: Floats, encounter_of: Ints, times: Floats, hit_of: Ints) -> None:
+    """Encounter by encounter; `hit_of` becomes the hit of each contact, or stays -1. All hits have an encounter."""
     c = 0
     h = 0
     while c < len(onset):
-        of = encounter[c]
+        current = encounter[c]
         next_c = c
-        while next_c < len(onset) and encounter[next_c] == of:
+        while next_c < len(onset) and encounter[next_c] == current:
             next_c += 1
-        while h < len(times) and home[h] < of:
+        while h < len(times) and encounter_of[h] < current:
             h += 1
         next_h = h
-        while next_h < len(times) and home[next_h] == of:
+        while next_h < len(times) and encounter_of[next_h] == current:
             next_h += 1
         if next_h > h:
-            _match_one(onset[c:next_c], release[c:next_c], times[h:next_h], h, partner[c:next_c])
+            _match_one(onset[c:next_c], release[c:next_c], times[h:next_h], h, hit_of[c:next_c])
         c, h = next_c, next_h
 
 
 @kernel
-def _match_one(onset: Floats, release: Floats, times: Floats, first: int, partner: Ints) -> None:
+def _match_one(onset: Floats, release: Floats, times: Floats, first: int, hit_of: Ints) -> None:
     """The best matching of one encounter, from those of its first contacts and hits (dynamic programming)."""
     m, n = len(onset), len(times)
     matches = np.zeros((m + 1, n + 1), np.int64)
@@ -146,7 +152,7 @@ def _match_one(onset: Floats, release: Floats, times: Floats, first: int, partne
         else:
             a -= 1
             b -= 1
-            partner[a] = first + b
+            hit_of[a] = first + b
 
 
 @kernel

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from harness.motion.law import MotionLaw
-from harness.motion.playback import positions_at
+from harness.reference.events import Events
+from harness.reference.positions_from_hits import positions_at
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies
@@ -20,7 +21,7 @@ def test_the_hits_of_a_run_tell_where_its_bodies_were(response, restitution):
     trace = fly(scene, "predictive", MotionLaw(2.0, 1.0, response, restitution)).trace
     assert len(trace.times) > 50
     times = np.array([0.5, 1.0, 2.0])
-    found = positions_at(times, bodies, trace, response, restitution)
+    found = positions_at(times, bodies, Events.of(trace), response, restitution)
     for time, positions in zip(times, found, strict=True):
         flown = fly(scene, "predictive", MotionLaw(time, 1.0, response, restitution)).trace
         np.testing.assert_allclose(positions, flown.positions, rtol=0, atol=1e-10)

@@ -1,6 +1,6 @@
-"""How far the computed contacts of spheres are right: a sample of them, solved again with fifty digits.
+"""How wrong the computed onsets of spheres are: a sample of them, solved again with fifty digits.
 
-Positions and velocities are taken as the exact numbers they are, and paths are folded without rounding that matters.
+Positions and velocities are taken as the exact numbers that they are; paths are folded to the same number of digits.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from harness.measure.contacts import Contacts
 from harness.motion.kinematics import Flight
+from harness.reference.contacts import Contacts
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
@@ -21,22 +21,29 @@ _MOST_STEPS = 200
 Vector = tuple[Decimal, ...]
 
 
-def largest_error(bodies: Bodies, box: Box, contacts: Contacts) -> float:
-    """The largest difference (s) between the onsets of a sample of contacts and the exact ones; 0 without any."""
+def sphere_onset_error(bodies: Bodies, box: Box, contacts: Contacts) -> float:
+    """The largest difference (s) between the onsets of a sample of contacts and the exact ones; 0 without any.
+
+    Parameters
+    ----------
+    bodies : at time 0
+    box : that reflects them
+    contacts : of their bounding spheres
+    """
     begins = np.flatnonzero(contacts.onset > 0.0)
     begins = begins[np.argsort(contacts.onset[begins], kind="stable")]
     # spread over the duration, the last among them: late times have the fewest digits
     chosen = begins[np.unique(np.linspace(len(begins) - 1, 0, SAMPLE).astype(np.int64))] if len(begins) else begins
     with localcontext() as context:
         context.prec = DIGITS
-        paths = _Paths(bodies, box)
+        paths = _DecimalPaths(bodies, box)
         pairs = contacts.pairs[contacts.encounter[chosen]].tolist()
         times = contacts.onset[chosen].tolist()
         errors = [abs(paths.onset(i, j, time) - Decimal(time)) for (i, j), time in zip(pairs, times, strict=True)]
         return float(max(errors, default=Decimal(0)))
 
 
-class _Paths:
+class _DecimalPaths:
     """Folded paths of bodies, exact but for the fiftieth digit. Made and used within a context of so many digits."""
 
     def __init__(self, bodies: Bodies, box: Box) -> None:

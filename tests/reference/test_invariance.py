@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from harness.motion.hits import Trace
-from harness.motion.invariance import CHECKS, invariance
 from harness.motion.soundness import NotANumberError, refuse_lost
+from harness.reference.invariance import CHECKS, invariance
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies, random_scene

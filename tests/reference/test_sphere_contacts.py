@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.motion.encounters import sphere_contacts
 from harness.motion.kinematics import Flight
-from harness.motion.precise import largest_error
+from harness.reference.sphere_contacts import sphere_contacts
+from harness.reference.sphere_onset_error import sphere_onset_error
 from harness.scene.box import Box
 from tests.conftest import make_bodies
 from tests.motion.slow_reference import PAIR, Reference
@@ -88,7 +88,7 @@ def test_every_onset_is_that_of_a_search_in_fifty_digits_event_for_event(seed):
         hits = [(i, j, time) for time, kind, i, j in exact.events if kind == PAIR and time <= duration]
         expected = sorted((i, j, float(time)) for i, j, time in hits)
     found = sphere_contacts(bodies, box, duration)
-    begun = found.begins(duration)
+    begun = found.begin_until(duration)
     onsets = [
         (*pair, time) for pair, time in zip(found.pairs[begun].tolist(), found.onset[begun].tolist(), strict=True)
     ]
@@ -127,9 +127,9 @@ def test_looking_only_at_neighbours_window_by_window_finds_the_same(windows):
 def test_the_check_in_fifty_digits_finds_good_times_good_and_a_wrong_one_wrong():
     bodies, box = gas(7)
     found = sphere_contacts(bodies, box, 20.0)
-    assert largest_error(bodies, box, found) < 1e-12
+    assert sphere_onset_error(bodies, box, found) < 1e-12
     found.onset[found.onset.argmax()] += 1e-9
-    assert largest_error(bodies, box, found) == pytest.approx(1e-9, rel=1e-3)
+    assert sphere_onset_error(bodies, box, found) == pytest.approx(1e-9, rel=1e-3)
 
 
 def test_one_body_and_none_have_no_contacts():
@@ -137,4 +137,4 @@ def test_one_body_and_none_have_no_contacts():
         bodies = make_bodies(np.zeros((count, 3)), np.ones((count, 3)))
         found = sphere_contacts(bodies, WIDE, 1.0)
         assert len(found) == 0
-        assert largest_error(bodies, WIDE, found) == 0.0
+        assert sphere_onset_error(bodies, WIDE, found) == 0.0

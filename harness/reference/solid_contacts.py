@@ -7,19 +7,21 @@ the first contact to the last.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from harness.arrays import Floats
 from harness.errors import InputError
-from harness.measure.contacts import Contacts
-from harness.motion.encounters import Paths, sphere_contacts
 from harness.motion.kinematics import turn
 from harness.narrowphase.advancement import Motion
 from harness.narrowphase.contact_intervals import Contacts as Intervals
 from harness.narrowphase.contact_intervals import hull_contacts, mesh_contacts
 from harness.narrowphase.mesh_advancement import mesh_shape
 from harness.narrowphase.support import support_map
+from harness.reference.contacts import Contacts
+from harness.reference.folded_paths import folded_paths, straight_pieces
+from harness.reference.sphere_contacts import sphere_contacts
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
@@ -53,11 +55,23 @@ def solid_contacts(scene: Scene, duration: float, tolerance: float) -> Contacts:
     search = _Search(scene, tolerance)
     windows = zip(encounters.pairs.tolist(), encounters.begin.tolist(), encounters.end.tolist(), strict=True)
     found = [search.within(i, j, begin, end) for (i, j), begin, end in windows]
-    times = np.array([times for contacts in found for times in contacts]).reshape(-1, 2)
-    numbers = np.repeat(np.arange(len(found)), [len(contacts) for contacts in found])
+    contacts = [contact for of_encounter in found for contact in of_encounter]
     return Contacts(
-        duration, encounters.pairs, encounters.begin, encounters.end, numbers, times[:, 0].copy(), times[:, 1].copy()
+        duration,
+        encounters.pairs,
+        encounters.begin,
+        encounters.end,
+        encounter=np.repeat(np.arange(len(found)), [len(of_encounter) for of_encounter in found]),
+        onset=np.array([contact.onset for contact in contacts], np.float64),
+        release=np.array([contact.release for contact in contacts], np.float64),
     )
+
+
+class Contact(NamedTuple):
+    """From when until when a pair touches, s."""
+
+    onset: float
+    release: float
 
 
 class _Search:
@@ -66,23 +80,24 @@ class _Search:
     def __init__(self, scene: Scene, tolerance: float) -> None:
         assert scene.mesh is not None
         self._bodies, self._tolerance = scene.bodies, tolerance
-        self._paths = Paths(scene.bodies, scene.box)
+        self._paths = folded_paths(scene.bodies, scene.box)
         self._reach = float(np.linalg.norm(scene.mesh.hull.vertices, axis=1).max())
         self._search = _hulls(scene.mesh) if scene.shape == "hull" else _surfaces(scene.mesh)
 
-    def within(self, i: int, j: int, begin: float, end: float) -> list[tuple[float, float]]:
-        """The contacts of a pair in a window: from when until when, s."""
-        found: list[tuple[float, float]] = []
-        for start, stop, places, velocities in self._paths.pieces(i, j, begin, end):
+    def within(self, i: int, j: int, begin: float, end: float) -> list[Contact]:
+        """The contacts of a pair in a window (s)."""
+        found: list[Contact] = []
+        for piece in straight_pieces(self._paths, i, j, begin, end):
+            start, stop = piece.begin, piece.end
             quaternions = np.empty((2, 4))
             turn(self._bodies.quaternions[[i, j]], self._bodies.spins[[i, j]], start, quaternions)
-            one = self._motion(i, places[0], velocities[0], quaternions[0])
-            other = self._motion(j, places[1], velocities[1], quaternions[1])
+            one = self._motion(i, piece.places[0], piece.velocities[0], quaternions[0])
+            other = self._motion(j, piece.places[1], piece.velocities[1], quaternions[1])
             for onset, release in self._intervals(one, other, stop - start):
                 # what lasts to the end of one piece goes on in the next
-                goes_on = bool(found) and onset == 0.0 and found[-1][1] == start
-                first = found.pop()[0] if goes_on else start + onset
-                found.append((first, stop if release >= stop - start else start + release))
+                goes_on = bool(found) and onset == 0.0 and found[-1].release == start
+                first = found.pop().onset if goes_on else start + onset
+                found.append(Contact(first, stop if release >= stop - start else start + release))
         return found
 
     def _motion(self, body: int, place: Floats, velocity: Floats, quaternion: Floats) -> Motion:

@@ -7,15 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.measure.contacts import Contacts, of_spheres
-from harness.measure.matching import match
+from harness.reference.contacts import Contacts
+from harness.reference.matching import match
 
 
 def spheres(*contacts, duration=10.0):
     """Contacts (pair, onset, release) of spheres."""
     ordered = sorted(contacts)
     times = np.array([(begin, end) for _, begin, end in ordered], float).reshape(-1, 2)
-    return of_spheres(duration, np.array([pair for pair, *_ in ordered], int).reshape(-1, 2), times[:, 0], times[:, 1])
+    return Contacts.of_spheres(
+        duration, np.array([pair for pair, *_ in ordered], int).reshape(-1, 2), times[:, 0], times[:, 1]
+    )
 
 
 def hits(*found, until=10.0, of):

@@ -4,14 +4,15 @@ from math import inf
 
 import numpy as np
 
-from harness.measure.divergence import first_divergence
+from harness.reference.divergence import first_divergence
+from harness.reference.events import Events
 
 
 def events(*found):
     """(time, i, j) for a pair, (time, i, "x+") for a wall."""
     walls = [("x-", "x+", "y-", "y+", "z-", "z+").index(b) if isinstance(b, str) else -1 for _, _, b in found]
     pairs = [(a, -1 if isinstance(b, str) else b) for _, a, b in found]
-    return (
+    return Events(
         np.array([time for time, *_ in found], float),
         np.array(pairs, int).reshape(-1, 2),
         np.array(walls, int).reshape(-1),
@@ -19,7 +20,7 @@ def events(*found):
 
 
 def parted(first, second, bodies=4):
-    there, back = first_divergence(bodies, *first, *second), first_divergence(bodies, *second, *first)
+    there, back = first_divergence(bodies, first, second), first_divergence(bodies, second, first)
     assert there == back
     return there
 

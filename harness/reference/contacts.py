@@ -1,4 +1,4 @@
-"""The contacts of a motion that nothing answers: who touches whom, from when until when.
+"""The contacts of a motion without response: which pairs touch, from when until when.
 
 An *encounter* is a time during which the bounding spheres of a pair touch. Within it the bodies themselves may touch
 once, several times, or not at all; of spheres the encounter is the one contact.
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.arrays import Floats, Ints, Pairs
+from harness.arrays import Flags, Floats, Ints, Pairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,11 @@ class Contacts:
     onset: Floats
     release: Floats
 
+    @classmethod
+    def of_spheres(cls, duration: float, pairs: Pairs, begin: Floats, end: Floats) -> Contacts:
+        """The contacts of spheres: each encounter is one."""
+        return cls(duration, pairs, begin, end, np.arange(len(begin)), begin, end)
+
     def __len__(self) -> int:
         return len(self.onset)
 
@@ -44,12 +49,12 @@ class Contacts:
         lengths: Floats = self.release - self.onset
         return lengths
 
-    def begins(self, until: float) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """(m,) bool array: the contacts that begin while somebody watches, after 0 and up to `until` (s)."""
-        seen: np.ndarray[tuple[int], np.dtype[np.bool_]] = (self.onset > 0.0) & (self.onset <= until)
-        return seen
+    def begin_until(self, time: float) -> Flags:
+        """(m,) bool array: the contacts that begin after 0 and up to `time` (s).
 
-
-def of_spheres(duration: float, pairs: Pairs, begin: Floats, end: Floats) -> Contacts:
-    """The contacts of spheres: each encounter is one."""
-    return Contacts(duration, pairs, begin, end, np.arange(len(begin)), begin, end)
+        >>> onset = np.array([0.0, 2.0, 5.0])
+        >>> Contacts.of_spheres(9.0, np.array([[0, 1]] * 3), onset, onset + 1.0).begin_until(4.0).tolist()
+        [False, True, False]
+        """
+        begun: Flags = (self.onset > 0.0) & (self.onset <= time)
+        return begun
