@@ -13,7 +13,7 @@ from harness.measure.conservation import Conservation
 from harness.methods.penetration import Penetration
 from harness.motion.digest import EventDigest
 from harness.motion.hits import HitLog
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.scene.scene import Scene
 
 
@@ -23,18 +23,18 @@ class Observer:
     Parameters
     ----------
     scene : Scene
-    flight : Flight being stepped
+    trajectory : Trajectory being stepped
     penetration : measure the depth of overlaps (spheres and hulls only)
     traced : keep every hit in `log`
     """
 
-    def __init__(self, scene: Scene, flight: Flight, *, penetration: bool, traced: bool) -> None:
+    def __init__(self, scene: Scene, trajectory: Trajectory, *, penetration: bool, traced: bool) -> None:
         self.pair_hits = self.pair_contacts = self.wall_hits = 0
         self.max_penetration = 0.0
         self.log = HitLog() if traced else None
         self.digest = EventDigest()
         self.conservation = Conservation(scene.bodies)
-        self._flight = flight
+        self._trajectory = trajectory
         self._half = scene.box.half
         self._outside = np.zeros(len(scene.bodies), np.bool_)
         self._penetration = Penetration(scene) if penetration else None
@@ -61,7 +61,7 @@ class Observer:
             if len(answered):
                 self.digest.add_pairs(time, answered)
             if self._penetration is not None:
-                deepest = self._penetration.deepest(pairs, self._flight.positions, self._flight.quaternions)
+                deepest = self._penetration.deepest(pairs, self._trajectory.positions, self._trajectory.quaternions)
                 self.max_penetration = max(self.max_penetration, deepest)
             if self.log is not None:
                 self.log.add_pairs(time, answered)
@@ -71,8 +71,8 @@ class Observer:
             self.digest.add_walls(time, walls)
             if self.log is not None:
                 self.log.add_walls(time, walls)
-        self._outside |= (np.abs(self._flight.positions) > self._half).any(axis=1)
-        self.conservation.observe(self._flight.velocities)
+        self._outside |= (np.abs(self._trajectory.positions) > self._half).any(axis=1)
+        self.conservation.observe(self._trajectory.velocities)
 
     def repeat(self, pairs: Pairs, times: int) -> None:
         """Take note of frames that are like the last one, in which nothing was answered."""
@@ -82,13 +82,13 @@ class Observer:
 class Folds:
     """Tells which walls the folded paths have met since the frame before."""
 
-    def __init__(self, flight: Flight) -> None:
-        self._flight = flight
-        self._before = np.zeros((len(flight.positions), 6), np.int64)
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
+        self._before = np.zeros((len(trajectory.positions), 6), np.int64)
 
     def by(self, time: float) -> Ints:
         """(n, 6) int array: how often which wall, up to the frame at `time` (s)."""
-        folds = self._flight.folds(time)
+        folds = self._trajectory.folds(time)
         new = folds - self._before
         self._before = folds
         return new

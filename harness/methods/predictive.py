@@ -24,14 +24,14 @@ from harness.methods.sample import RESPONSES, TOUCHING, two_bodies
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import decide_penetration, decide_recording
 from harness.motion.course import CourseLog
+from harness.motion.finite import require_finite_state
 from harness.motion.hits import Outcome, Trace
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.motion.predictive.preparation import check, choose_search
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form, needs_its_surface
-from harness.motion.soundness import refuse_lost
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
@@ -200,7 +200,7 @@ class _Watch:
     def look(self, simulation: Simulation, time: float) -> None:
         """Take note of the state at a time, s."""
         positions, velocities = simulation.positions, simulation.velocities
-        refuse_lost(positions, velocities, simulation.time)
+        require_finite_state(positions, velocities, simulation.time)
         self._conservation.observe(velocities)
         if self._elastic:
             self._conservation.observe_momentum(velocities, simulation.wall_impulses)
@@ -230,14 +230,14 @@ class _Depth:
 
     def __init__(self, scene: Scene) -> None:
         self.deepest = 0.0
-        self._flight = Flight(scene.bodies, scene.box, folded=False, turning=scene.shape != "sphere")
+        self._trajectory = Trajectory(scene.bodies, scene.box, folded=False, turning=scene.shape != "sphere")
         self._grid = HierarchicalGrid(scene.bodies.radii, scene.box)
         self._penetration = Penetration(scene)
 
     def look(self, positions: Floats, time: float) -> None:
         pairs = self._grid.close_pairs(positions)
-        self._flight.move_to(time)
-        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._flight.quaternions))
+        self._trajectory.move_to(time)
+        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))
 
 
 def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:

@@ -18,11 +18,11 @@ from harness.measure.conservation import energy
 from harness.methods.observer import Folds, Observer, Onsets
 from harness.methods.stages import Plan
 from harness.motion.course import CourseLog, folded_course
+from harness.motion.finite import require_finite_state
 from harness.motion.hits import Outcome, Trace
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
-from harness.motion.response import Answers
-from harness.motion.soundness import refuse_lost
+from harness.motion.response import CollisionResponse
 from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
@@ -82,12 +82,14 @@ class Stepping:
         """
         scene, plan, detector = self._scene, self._plan, self._detector
         folded, recorded = law.response == "none", plan.keeps("recording")
-        flight = Flight(scene.bodies, scene.box, folded=folded, turning=plan.keeps("orientations"))
-        observer = Observer(scene, flight, penetration=plan.keeps("penetration"), traced=traced)
-        answers = None if law.response == "none" else Answers(scene.bodies.masses, law.response, law.restitution)
-        course = CourseLog(flight.positions, flight.velocities) if recorded and answers else None
-        steps = _steps(scene, plan, flight, detector, answers)
-        look = _look(observer, flight, answers, course)
+        trajectory = Trajectory(scene.bodies, scene.box, folded=folded, turning=plan.keeps("orientations"))
+        observer = Observer(scene, trajectory, penetration=plan.keeps("penetration"), traced=traced)
+        response = (
+            None if law.response == "none" else CollisionResponse(scene.bodies.masses, law.response, law.restitution)
+        )
+        course = CourseLog(trajectory.positions, trajectory.velocities) if recorded and response else None
+        steps = _steps(scene, plan, trajectory, detector, response)
+        look = _look(observer, trajectory, response, course)
         clock = Clock(*PHASES)
 
         def fly(number: int) -> _Frame:
@@ -104,7 +106,7 @@ class Stepping:
         else:
             tests = _first_frames(fly, law.frames, observer, detector)
         end = law.frames * law.dt
-        refuse_lost(flight.positions, flight.velocities, end)
+        require_finite_state(trajectory.positions, trajectory.velocities, end)
         counted: dict[str, float] = {
             "frames": law.frames,
             **tests,
@@ -118,9 +120,9 @@ class Stepping:
             **counted,
             **_rates(counted, len(scene.bodies), law.frames, end),
             **_clock_metrics(clock, law.frames, end),
-            **_errors(observer, answers, plan),
+            **_errors(observer, response, plan),
         }
-        trace = _trace(scene, flight, observer, end, counted) if traced else None
+        trace = _trace(scene, trajectory, observer, end, counted) if traced else None
         if course is not None:
             return Outcome(metrics, trace, course.course())
         return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
@@ -131,38 +133,40 @@ _NO_HITS: Flags = np.empty(0, np.bool_)
 _NO_WALLS: Flags = np.empty((0, 6), np.bool_)
 
 
-def _steps(scene: Scene, plan: Plan, flight: Flight, detector: Detector | None, answers: Answers | None) -> list[_Step]:
+def _steps(
+    scene: Scene, plan: Plan, trajectory: Trajectory, detector: Detector | None, response: CollisionResponse | None
+) -> list[_Step]:
     """The steps of a frame that the plan keeps."""
 
     def move(frame: _Frame) -> None:
-        flight.move_to(frame.time)
+        trajectory.move_to(frame.time)
 
     steps: list[_Step] = [("pair_seconds", move)]
     if detector is not None:
         detect = detector.pairs
 
         def move_and_detect(frame: _Frame) -> None:
-            flight.move_to(frame.time)
-            frame.pairs = detect(flight.positions, flight.quaternions)
+            trajectory.move_to(frame.time)
+            frame.pairs = detect(trajectory.positions, trajectory.quaternions)
 
         steps = [("pair_seconds", move_and_detect)]
-    if answers is None:
+    if response is None:
         return steps
 
     def respond(frame: _Frame) -> None:
-        answers.changed[:] = False
-        frame.hits = answers.pairs(frame.pairs, flight.positions, flight.velocities)
+        response.changed[:] = False
+        frame.hits = response.pairs(frame.pairs, trajectory.positions, trajectory.velocities)
 
     def respond_and_redirect(frame: _Frame) -> None:
         respond(frame)
-        flight.redirect(answers.changed, frame.time)
+        trajectory.redirect(response.changed, frame.time)
 
     def walls_and_redirect(frame: _Frame) -> None:
-        frame.walls = answers.walls(touching_walls(flight), flight.velocities)
-        flight.redirect(answers.changed, frame.time)
+        frame.walls = response.walls(touching_walls(trajectory), trajectory.velocities)
+        trajectory.redirect(response.changed, frame.time)
 
     def walls_alone(frame: _Frame) -> None:
-        answers.changed[:] = False
+        response.changed[:] = False
         walls_and_redirect(frame)
 
     if not plan.keeps("walls"):
@@ -174,7 +178,7 @@ def _steps(scene: Scene, plan: Plan, flight: Flight, detector: Detector | None, 
 
 
 def _look(
-    observer: Observer, flight: Flight, answers: Answers | None, course: CourseLog | None
+    observer: Observer, trajectory: Trajectory, response: CollisionResponse | None, course: CourseLog | None
 ) -> Callable[[_Frame], None]:
     """What is done with a frame after it, outside of all clocks."""
 
@@ -184,18 +188,18 @@ def _look(
     def passing(frame: _Frame) -> None:
         observer.frame(frame.time, frame.pairs, onsets.of(frame.pairs), folds.by(frame.time))
 
-    if answers is not None:
-        return answered if course is None else _recorded(answered, course, flight)
-    onsets, folds = Onsets(len(flight.positions)), Folds(flight)
+    if response is not None:
+        return answered if course is None else _recorded(answered, course, trajectory)
+    onsets, folds = Onsets(len(trajectory.positions)), Folds(trajectory)
     return passing
 
 
-def _recorded(look: Callable[[_Frame], None], course: CourseLog, flight: Flight) -> Callable[[_Frame], None]:
+def _recorded(look: Callable[[_Frame], None], course: CourseLog, trajectory: Trajectory) -> Callable[[_Frame], None]:
     """The same, and the legs that begin in the frame are kept."""
 
     def look_and_keep(frame: _Frame) -> None:
         look(frame)
-        course.turn(frame.time, flight.positions, flight.velocities)
+        course.turn(frame.time, trajectory.positions, trajectory.velocities)
 
     return look_and_keep
 
@@ -228,21 +232,21 @@ def _first_frames(
     return before
 
 
-def _wall_test(scene: Scene, plan: Plan) -> Callable[[Flight], Flags]:
+def _wall_test(scene: Scene, plan: Plan) -> Callable[[Trajectory], Flags]:
     """The test of all bodies against the six walls that the scene needs; its answer is overwritten by the next."""
     touching = np.zeros((len(scene.bodies), 6), np.bool_)
     half, sizes, radii = scene.box.half, scene.bodies.sizes, scene.bodies.radii
     if scene.shape == "sphere" or scene.mesh is None:
 
-        def spheres(flight: Flight) -> Flags:
-            spheres_at_walls(flight.positions, radii, half, touching)
+        def spheres(trajectory: Trajectory) -> Flags:
+            spheres_at_walls(trajectory.positions, radii, half, touching)
             return touching
 
         return spheres
     hull, cull = support_map(scene.mesh.hull.vertices), plan.keeps("wall_cull")
 
-    def hulls(flight: Flight) -> Flags:
-        hulls_at_walls(flight.positions, flight.quaternions, sizes, hull, half, cull, touching)
+    def hulls(trajectory: Trajectory) -> Flags:
+        hulls_at_walls(trajectory.positions, trajectory.quaternions, sizes, hull, half, cull, touching)
         return touching
 
     return hulls
@@ -276,25 +280,27 @@ def _clock_metrics(clock: Clock, frames: int, simulated: float) -> dict[str, flo
     return seconds
 
 
-def _errors(observer: Observer, answers: Answers | None, plan: Plan) -> dict[str, float]:
+def _errors(observer: Observer, response: CollisionResponse | None, plan: Plan) -> dict[str, float]:
     errors = {"energy_drift": observer.conservation.energy_drift, "escaped": float(observer.escaped)}
     errors["event_digest"] = observer.digest.value
-    if answers is not None and answers.elastic and observer.conservation.momentum_scale > 0.0:
-        errors["momentum_drift"] = answers.momentum_added / observer.conservation.momentum_scale
+    if response is not None and response.elastic and observer.conservation.momentum_scale > 0.0:
+        errors["momentum_drift"] = response.momentum_added / observer.conservation.momentum_scale
     if plan.keeps("penetration"):
         errors["max_penetration"] = observer.max_penetration
     return errors
 
 
-def _trace(scene: Scene, flight: Flight, observer: Observer, end: float, counted: dict[str, float]) -> Trace | None:
+def _trace(
+    scene: Scene, trajectory: Trajectory, observer: Observer, end: float, counted: dict[str, float]
+) -> Trace | None:
     if observer.log is None:
         return None
-    flight.move_to(end)
-    velocities = flight.velocities_at(end)
+    trajectory.move_to(end)
+    velocities = trajectory.velocities_at(end)
     return Trace(
         *observer.log.arrays(),
         time=end,
-        positions=flight.positions.copy(),
+        positions=trajectory.positions.copy(),
         velocities=velocities,
         energy=energy(velocities, scene.bodies.masses),
         counters=counted,

@@ -14,7 +14,7 @@ import numpy as np
 
 from harness.arrays import Floats, Ints
 from harness.kernel import kernel
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
@@ -62,7 +62,7 @@ def folded_paths(bodies: Bodies, box: Box) -> FoldedPaths:
     bodies : at time 0
     box : Box
     """
-    velocities = Flight(bodies, box, folded=True, turning=False).velocities
+    velocities = Trajectory(bodies, box, folded=True, turning=False).velocities
     room = box.half - bodies.radii[:, None]
     free = room > 0.0  # a body as large as the box stays in the middle
     origins, velocities = np.where(free, bodies.positions, 0.0), np.where(free, velocities, 0.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from harness.arrays import Floats, Ints
 from harness.motion.hits import Trace
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import hull_of
@@ -130,9 +130,9 @@ _PI_REST = np.longdouble("2.449293598294706414e-16")
 
 def _turned(scene: Scene, time: float) -> Floats:
     """(n, 4): orientations at a time (s), as a run has them."""
-    flight = Flight(scene.bodies, scene.box, folded=True, turning=True)
-    flight.move_to(time)
-    turned: Floats = flight.quaternions
+    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=True)
+    trajectory.move_to(time)
+    turned: Floats = trajectory.quaternions
     return turned
 
 

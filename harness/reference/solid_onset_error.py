@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.arrays import Floats
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.reference.contacts import Contacts
 from harness.scene.scene import Scene
 
@@ -31,12 +31,12 @@ def solid_onset_error(scene: Scene, contacts: Contacts) -> float:
     from harness.backends.fcl_objects import FclObjects
 
     bodies = FclObjects(scene)
-    flight = Flight(scene.bodies, scene.box, folded=True, turning=True)
+    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=True)
     request, result = fcl.CollisionRequest(), fcl.CollisionResult()
 
     def touching(i: int, j: int, time: float) -> bool:
-        flight.move_to(time)
-        bodies.place(flight.positions, flight.quaternions, np.array([i, j]))
+        trajectory.move_to(time)
+        bodies.place(trajectory.positions, trajectory.quaternions, np.array([i, j]))
         return bool(fcl.collide(bodies.objects[i], bodies.objects[j], request, result))
 
     worst = 0.0

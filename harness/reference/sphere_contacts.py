@@ -16,7 +16,7 @@ import numpy as np
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.kernel import kernel
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.reference.contacts import Contacts
 from harness.reference.folded_paths import FoldedPaths, fold_time, folded_paths, leg_at, state_on_leg
 from harness.scene.bodies import Bodies
@@ -110,12 +110,12 @@ def _near(bodies: Bodies, radii: Floats, box: Box, cuts: Floats) -> Iterator[_Wi
         first, second = np.triu_indices(len(bodies), 1)
         yield _Window(cuts[0], cuts[1], np.column_stack([first, second]).astype(np.int64))
         return
-    flight = Flight(bodies, box, folded=True, turning=False)
+    trajectory = Trajectory(bodies, box, folded=True, turning=False)
     reach = np.linalg.norm(bodies.velocities, axis=1) * (cuts[1] - cuts[0]) / 2
     grid = HierarchicalGrid((radii + reach) * (1.0 + 1e-9), box)
     for begin, end in pairwise(cuts.tolist()):
-        flight.move_to((begin + end) / 2)
-        yield _Window(begin, end, grid.close_pairs(flight.positions))
+        trajectory.move_to((begin + end) / 2)
+        yield _Window(begin, end, grid.close_pairs(trajectory.positions))
 
 
 def _encounters(paths: FoldedPaths, radii: Floats, window: _Window) -> Encounters:

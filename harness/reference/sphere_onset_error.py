@@ -9,7 +9,7 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.reference.contacts import Contacts
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
@@ -48,7 +48,7 @@ class _DecimalPaths:
 
     def __init__(self, bodies: Bodies, box: Box) -> None:
         self._origins = [tuple(map(Decimal, row)) for row in bodies.positions.tolist()]
-        velocities = Flight(bodies, box, folded=True, turning=False).velocities
+        velocities = Trajectory(bodies, box, folded=True, turning=False).velocities
         self._velocities = [tuple(map(Decimal, row)) for row in velocities.tolist()]
         half = [Decimal(side) for side in box.half.tolist()]
         self._radii = [Decimal(radius) for radius in bodies.radii.tolist()]

@@ -13,9 +13,9 @@ from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.methods.method import Method
 from harness.methods.stages import Plan
+from harness.motion.finite import NotFiniteError
 from harness.motion.hits import Trace
 from harness.motion.law import MotionLaw
-from harness.motion.soundness import NotANumberError
 from harness.reference.invariance import invariance
 from harness.runner import accuracy
 from harness.runner.point import is_stepped, law_of, method_of_point
@@ -63,7 +63,7 @@ def execute(
     ------
     PlacementError, SceneSizeError, InputError
         If the point cannot be run as it is declared.
-    NotANumberError
+    NotFiniteError
         If what it came to is not all numbers.
     """
     warm_up(point)
@@ -82,7 +82,7 @@ def execute(
     metrics |= invariance(asked, scene, partial(_hits_as_planned, method, plan, law))
     if point.reference is not None and not traced:
         metrics |= accuracy.errors(point, mesh, outcome.trace or hits(point, scene), hits)
-    _refuse_what_is_no_number(metrics)
+    _require_finite_metrics(metrics)
     return Result(metrics, plan, outcome.trace if traced else None, flights)
 
 
@@ -99,10 +99,10 @@ def _hits_as_planned(method: Method, plan: Plan, law: MotionLaw, scene: Scene, s
     return trace
 
 
-def _refuse_what_is_no_number(metrics: Mapping[str, float]) -> None:
+def _require_finite_metrics(metrics: Mapping[str, float]) -> None:
     wrong = [f"{name} is {value}" for name, value in metrics.items() if not isfinite(value)]
     if wrong:
-        raise NotANumberError(", ".join(wrong))
+        raise NotFiniteError(", ".join(wrong))
 
 
 def plan_of(point: Point, scene: Scene) -> Plan:

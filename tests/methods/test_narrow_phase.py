@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.methods.narrow_phase import overhang
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.narrowphase.gjk import MARGIN
 from harness.scene.box import Box
 from harness.scene.scene import Scene
@@ -94,15 +94,15 @@ def test_meshes_that_reach_into_each_others_hulls_are_told_apart(name):
 def test_what_is_remembered_from_frame_to_frame_changes_no_answer(name, shape, ratio):
     sizes = ratio ** -np.random.default_rng(1).choice([0.0, 0.5, 1.0], 24)
     scene = crowd(mesh_named(name), shape, 24, 2.2, 3, sizes)
-    flight = Flight(scene.bodies, scene.box, folded=True, turning=True)
+    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=True)
     kept, brute = detector(scene), detector(scene, "brute-force")
     # frames, then leaps, then the first frame again
     for time in [*np.arange(5) / 60, 5.0, 5.5, 5.5, 0.0]:
-        flight.move_to(time)
-        answer = kept.pairs(flight.positions, flight.quaternions).tolist()
+        trajectory.move_to(time)
+        answer = kept.pairs(trajectory.positions, trajectory.quaternions).tolist()
         fresh = detector(scene)
-        assert answer == fresh.pairs(flight.positions, flight.quaternions).tolist()
-        assert answer == brute.pairs(flight.positions, flight.quaternions).tolist()
+        assert answer == fresh.pairs(trajectory.positions, trajectory.quaternions).tolist()
+        assert answer == brute.pairs(trajectory.positions, trajectory.quaternions).tolist()
         if shape == "mesh":
             assert kept.contained.tolist() == fresh.contained.tolist()
 

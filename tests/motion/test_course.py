@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from harness.motion.course import folded_course
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies, random_scene
@@ -70,10 +70,10 @@ def test_folded_legs_agree_with_the_closed_form_also_from_beyond_a_wall():
     )
     box = Box(np.array([2.0, 1.5, 3.0]))
     course = folded_course(bodies, box, 20.0)
-    flight = Flight(bodies, box, folded=True, turning=False)
+    trajectory = Trajectory(bodies, box, folded=True, turning=False)
     for time in np.linspace(0.01, 20, 57):
-        flight.move_to(time)
-        assert np.abs(positions_at(course, time, 3) - flight.positions).max() < 1e-12
+        trajectory.move_to(time)
+        assert np.abs(positions_at(course, time, 3) - trajectory.positions).max() < 1e-12
 
 
 def test_a_scene_without_bodies_has_a_course_without_legs():

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from harness.motion.finite import NotFiniteError, require_finite_state
 from harness.motion.hits import Trace
-from harness.motion.soundness import NotANumberError, refuse_lost
 from harness.reference.invariance import CHECKS, invariance
 from harness.scene.box import Box
 from harness.scene.scene import Scene
@@ -98,10 +98,10 @@ def test_orientations_drift_by_what_the_phase_has_lost_of_its_digits():
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
 def test_a_body_that_is_nowhere_is_refused_by_its_number(wrong):
     positions, velocities = np.zeros((4, 3)), np.zeros((4, 3))
-    refuse_lost(positions, velocities, 1.0)
+    require_finite_state(positions, velocities, 1.0)
     velocities[2, 1] = wrong
-    with pytest.raises(NotANumberError, match="at 1 s the velocity of body 2 is not a finite number"):
-        refuse_lost(positions, velocities, 1.0)
+    with pytest.raises(NotFiniteError, match="at 1 s the velocity of body 2 is not a finite number"):
+        require_finite_state(positions, velocities, 1.0)
 
 
 def rotation(q):

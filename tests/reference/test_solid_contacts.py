@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.reference.solid_contacts import solid_contacts
 from harness.reference.solid_onset_error import solid_onset_error
 from harness.scene.box import Box
@@ -45,11 +45,11 @@ def test_spinning_cubes_touch_at_a_moment_where_fcl_says_so(shape):
     scene = random_scene(shape, 8, 3.0, seed=4)
     found = solid_contacts(scene, 2.0, TOLERANCE)
     assert len(found) > 10
-    asked, flight = detector(scene), Flight(scene.bodies, scene.box, folded=True, turning=True)
+    asked, trajectory = detector(scene), Trajectory(scene.bodies, scene.box, folded=True, turning=True)
     for time in np.random.default_rng(0).uniform(0, 2.0, 100):
-        flight.move_to(time)
+        trajectory.move_to(time)
         open_now = (found.onset <= time) & (time <= found.release)
-        expected = set(map(tuple, asked.pairs(flight.positions, flight.quaternions).tolist()))
+        expected = set(map(tuple, asked.pairs(trajectory.positions, trajectory.quaternions).tolist()))
         assert set(map(tuple, found.pairs[found.encounter[open_now]].tolist())) == expected
     assert solid_onset_error(scene, found) < 1e-8
     late = found.onset > 0

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.reference.sphere_contacts import sphere_contacts
 from harness.reference.sphere_onset_error import sphere_onset_error
 from harness.scene.box import Box
@@ -102,12 +102,12 @@ def test_every_onset_is_that_of_a_search_in_fifty_digits_event_for_event(seed):
 def test_frames_touch_exactly_within_the_contacts(seed):
     bodies, box = gas(seed)
     found = sphere_contacts(bodies, box, 4.0)
-    flight = Flight(bodies, box, folded=True, turning=False)
+    trajectory = Trajectory(bodies, box, folded=True, turning=False)
     first, second = np.triu_indices(len(bodies), 1)
     reach = bodies.radii[first] + bodies.radii[second]
     for time in np.random.default_rng(seed).uniform(0, 4.0, 50):
-        flight.move_to(time)
-        gaps = np.linalg.norm(flight.positions[first] - flight.positions[second], axis=1) - reach
+        trajectory.move_to(time)
+        gaps = np.linalg.norm(trajectory.positions[first] - trajectory.positions[second], axis=1) - reach
         open_now = (found.onset <= time) & (time <= found.release)
         touching = set(map(tuple, found.pairs[open_now].tolist()))
         clear = np.abs(gaps) > 1e-9
