@@ -44,6 +44,7 @@ class AlgorithmWord:
 ALGORITHMS: dict[str, AlgorithmWord] = {
     "brute-force": AlgorithmWord("every pair, every frame"),
     "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies"),
+    "sap": AlgorithmWord("pairs from bodies sorted along an axis, each compared with those its interval overlaps"),
     "tree": AlgorithmWord("pairs from a dynamic tree of axis-aligned boxes"),
     "native": AlgorithmWord("the backend's own broad phase", own=False),
     "predictive": AlgorithmWord(
