@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import fcl
@@ -26,7 +27,8 @@ class FclTree:
     """
 
     def __init__(self, scene: Scene) -> None:
-        spheres = Scene("sphere", scene.mesh, scene.bodies, scene.box)
+        bodies = replace(scene.bodies, sizes=2 * scene.enclosing_radii)
+        spheres = Scene("sphere", scene.mesh, bodies, scene.box)
         self.pair_tests = 0
         # The tree hands back other objects than it was given. A body is known again by its geometry, which a contact
         # names; so each has a sphere of its own.

@@ -109,7 +109,7 @@ class Culled(SteppedMethod):
 
     def broad_phase(self, scene: Scene, plan: Plan) -> BroadPhase:
         """A new broad phase for the bodies of a scene."""
-        return self.scheme.make(scene.bodies.radii, scene.box, plan.keeps("size_classes"))
+        return self.scheme.make(scene.enclosing_radii, scene.box, plan.keeps("size_classes"))
 
     def detector(self, scene: Scene, plan: Plan) -> Detector:
         broad_phase = self.broad_phase(scene, plan)

@@ -9,12 +9,14 @@ import numpy as np
 
 from harness.arrays import Flags, Floats, Pairs
 from harness.backends.fcl_pair_test import FclPairTest
+from harness.errors import InputError
 from harness.methods.stages import Plan
 from harness.narrowphase.containment import Containment
 from harness.narrowphase.gjk import MARGIN, OVERLAP, SEPARATE, UNDECIDED
 from harness.narrowphase.hull_pairs import HullPairs, Verdicts
 from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.placement import Placement, Places
+from harness.scene.hull import Hull, hull_of
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
@@ -73,7 +75,7 @@ class HullNarrowPhase:
         assert scene.mesh is not None, "hulls come from a mesh"
         self._fcl = FclPairTest(scene)
         self._places = Places(scene.bodies.sizes)
-        self._hulls = HullPairs(scene.mesh.hull, MARGIN)
+        self._hulls = HullPairs(_hull_of_size_1(scene), MARGIN)
         self._tests = 0
 
     @property
@@ -156,6 +158,23 @@ class MeshNarrowPhase:
         self._contained += len(self.contained)
         touching: Pairs = close[hit]
         return touching
+
+
+def _hull_of_size_1(scene: Scene) -> Hull:
+    """The hull that the bodies have in their sizes.
+
+    Raises
+    ------
+    InputError
+        If each size is given a hull of its own: the kernels hold one for all.
+    """
+    assert scene.mesh is not None, "hulls come from a mesh"
+    if not scene.hulls:
+        return scene.mesh.hull
+    if len(scene.hulls) > 1:
+        raise InputError("it holds one hull for bodies of all sizes, and cannot take one for each size")
+    ((size, hull),) = scene.hulls.items()
+    return hull_of(hull.vertices / size, hull.faces)
 
 
 def _all_open(pairs: Pairs, placement: Placement) -> Verdicts:
