@@ -17,7 +17,7 @@ from harness.report.quantity import Scale, exponent_text, leaf_text, number, pow
 from harness.report.series import Arrangement, Cell
 from harness.report.table import Column, Entry, Table, counted, measured, plain, words
 from harness.report.tables import place_of
-from harness.report.tradeoffs import MOST_WRONG, TARGETS, Method, Setting, Tradeoff, tradeoffs
+from harness.report.tradeoffs import MOST_WRONG, TARGETS, Curve, Setting, Tradeoff, tradeoffs
 from harness.report.words import metric_title, metric_unit, scene_text
 
 _MOST_SCENES = 6
@@ -40,7 +40,7 @@ class AccuracySection:
     @cached_property
     def curves(self) -> list[Tradeoff]:
         """The scenes on which methods are compared, one of them at several settings."""
-        return [found for found in self.tradeoffs if found.is_curve and len(found.methods) > 1]
+        return [found for found in self.tradeoffs if found.is_curve and len(found.curves) > 1]
 
     @cached_property
     def decisions(self) -> list[Markup]:
@@ -106,12 +106,12 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
     target = tradeoff.decided
     if target is None:
         return None
-    (method, setting, _), *others = tradeoff.lead(target)
+    (curve, setting, _), *others = tradeoff.lead(target)
     text = Markup("For {} at an error of {}, use <strong>{}</strong>{}, {} of CPU time").format(
         scene_of(tradeoff),
         _target(target),
-        method.label,
-        _knob_text(method, setting),
+        curve.label,
+        _knob_text(curve, setting),
         quantity(setting.cost.median, "s"),
     )
     level = [other.label for other, _, behind in others if tradeoff.level(behind)]
@@ -123,7 +123,7 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
         text += Markup(": <strong>{}×</strong>{} cheaper than {}{}").format(
             number(ratio.median if ratio else math.nan), _interval(ratio), other.label, _knob_text(other, found)
         )
-    lost = [method.label for method in tradeoff.methods if method.cheapest(target) is None]
+    lost = [curve.label for curve in tradeoff.curves if curve.cheapest(target) is None]
     if lost:
         text += Markup("; {} {} not reach it").format(", ".join(lost), "does" if len(lost) == 1 else "do")
     return text + Markup(".")
@@ -131,7 +131,7 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
 
 def scene_of(tradeoff: Tradeoff) -> str:
     """The scene in a phrase."""
-    first = dict(tradeoff.methods[0].settings[0].cell.point.parameters)
+    first = dict(tradeoff.curves[0].settings[0].cell.point.parameters)
     shapes = {s.cell.point.parameters.get("shape") for _, s in tradeoff.settings}
     first["shape"] = next((shape for shape in ("mesh", "hull", "sphere") if shape in shapes), None)
     if first.get("count") is None and isinstance(first.get("bodies"), list):
@@ -142,7 +142,7 @@ def scene_of(tradeoff: Tradeoff) -> str:
 def work_precision(tradeoff: Tradeoff, name: str) -> Figure:
     """Error against CPU time, a curve a method, with the front that nothing beats."""
     unit = scale([found.cost.median for _, found in tradeoff.settings], "s")
-    lines = tuple(_line(method, unit) for method in tradeoff.methods)
+    lines = tuple(_line(curve, unit) for curve in tradeoff.curves)
     # an error of exactly 0, where nothing is known of the reference, has no place on a logarithmic axis
     front = tuple((found.cost.median / unit.factor, found.shown) for found in tradeoff.front if found.shown > 0)
     panel = Panel(
@@ -150,7 +150,7 @@ def work_precision(tradeoff: Tradeoff, name: str) -> Figure:
         rounded=True,
     )  # fmt: skip
     scene = scene_of(tradeoff)
-    said = " ".join(_spoken(method) for method in tradeoff.methods)
+    said = " ".join(_spoken(curve) for curve in tradeoff.curves)
     doubtful = any(line.doubtful for line in lines)
     caption = (
         "Both axes are logarithmic; the lower left is best. Bars: intervals of the CPU time over the repeats. "
@@ -166,7 +166,7 @@ def work_precision(tradeoff: Tradeoff, name: str) -> Figure:
         f"Log-log plot of the median time error of hits against CPU time. {said}",
         caption,
         lambda form, drawn: draw_panels([panel], form, drawn),
-        tuple(Key(method.label, method.style) for method in tradeoff.methods),
+        tuple(Key(curve.label, curve.style) for curve in tradeoff.curves),
     )
 
 
@@ -175,20 +175,20 @@ def fastest(tradeoff: Tradeoff) -> Table:
     unit = scale([found.cost.median for _, found in tradeoff.settings], "s")
     rows = []
     for target in TARGETS:
-        lead = {method.label: (found, behind) for method, found, behind in tradeoff.lead(target)}
+        lead = {curve.label: (found, behind) for curve, found, behind in tradeoff.lead(target)}
         row = [Entry(_target(target), numeric=False, sort=target)]
-        for method in tradeoff.methods:
-            if method.label not in lead:
-                row.append(Entry("", flag=_why_not(method), sort=math.inf))
+        for curve in tradeoff.curves:
+            if curve.label not in lead:
+                row.append(Entry("", flag=_why_not(curve), sort=math.inf))
                 continue
-            found, behind = lead[method.label]
+            found, behind = lead[curve.label]
             half = (found.cost.high - found.cost.low) / 2
             margin = f"±{unit.margin(found.cost.median, half)}" if half > 0 else ""
-            small = ", ".join(part for part in (margin, _knob_text(method, found).strip(" ()")) if part)
+            small = ", ".join(part for part in (margin, _knob_text(curve, found).strip(" ()")) if part)
             mark = "best" if tradeoff.level(behind) else ""
             row.append(Entry(unit.text(found.cost.median), small, mark=mark, sort=plain(found.cost.median)))
         rows.append(tuple(row))
-    columns = (Column("Error", numeric=False), *(Column(method.label, unit.symbol) for method in tradeoff.methods))
+    columns = (Column("Error", numeric=False), *(Column(curve.label, unit.symbol) for curve in tradeoff.curves))
     note = (
         f"CPU time of the cheapest setting that was measured to have no larger a median error, in {unit.symbol}, with "
         "half its interval and its setting. Bold: cheapest, or not to be told from it. A method that misses more than "
@@ -201,15 +201,15 @@ def orders(found: Sequence[Tradeoff]) -> Table | None:
     """The observed order of convergence of every stepped method."""
     rows = []
     for tradeoff in found:
-        for method in tradeoff.methods:
-            fit = method.order
+        for curve in tradeoff.curves:
+            fit = curve.order
             if fit is None or not fit.enough:
                 continue
             interval = f"{exponent_text(fit.low)} to {exponent_text(fit.high)}"
-            name = ", ".join(part for part in (method.label, tradeoff.place) if part)
+            name = ", ".join(part for part in (curve.label, tradeoff.place) if part)
             rows.append(
                 (
-                    words(name, method.style),
+                    words(name, curve.style),
                     Entry(exponent_text(fit.value), sort=plain(fit.value)),
                     Entry(interval, sort=plain(fit.low)),
                     counted(fit.n),
@@ -231,15 +231,15 @@ def orders(found: Sequence[Tradeoff]) -> Table | None:
 
 def hits(found: Sequence[Tradeoff]) -> Table:
     """Every method at every setting: its cost, its errors, and the hits that it missed or invented."""
-    settings = [(tradeoff, method, entry) for tradeoff in found for method, entry in tradeoff.settings]
+    settings = [(tradeoff, curve, entry) for tradeoff in found for curve, entry in tradeoff.settings]
     unit = scale([entry.cost.median for _, _, entry in settings], "s")
     places = any(tradeoff.place for tradeoff in found)
     expected = any(entry.cell.summary("missed_hits_expected") for _, _, entry in settings)
     rows = []
-    for tradeoff, method, entry in settings:
-        row = [words(method.label, method.style)]
+    for tradeoff, curve, entry in settings:
+        row = [words(curve.label, curve.style)]
         row += [words(tradeoff.place)] if places else []
-        knob = f"{method.knob} {leaf_text(entry.knob)}" if method.knob else "exact"
+        knob = f"{curve.knob} {leaf_text(entry.knob)}" if curve.knob else "exact"
         row += [Entry(knob, numeric=False, mark="keep", sort=entry.knob)]
         row += [Entry(unit.text(entry.cost.median), sort=plain(entry.cost.median))]
         row += [_seconds(entry.cell.median(name)) for name in ("time_error", "time_error_95")]
@@ -293,11 +293,11 @@ def _largest(cells: Sequence[Cell], metric: str) -> float | None:
     return max((value for cell in cells if math.isfinite(value := cell.median(metric))), default=None)
 
 
-def _line(method: Method, unit: Scale) -> Line:
-    found = [setting for setting in method.settings if setting.shown > 0]
+def _line(curve: Curve, unit: Scale) -> Line:
+    found = [setting for setting in curve.settings if setting.shown > 0]
     return Line(
-        method.label,
-        method.style,
+        curve.label,
+        curve.style,
         tuple(setting.cost.median / unit.factor for setting in found),
         tuple(setting.shown for setting in found),
         spans=tuple((setting.cost.low / unit.factor, setting.cost.high / unit.factor) for setting in found),
@@ -305,24 +305,24 @@ def _line(method: Method, unit: Scale) -> Line:
     )
 
 
-def _spoken(method: Method) -> str:
-    first, last = method.settings[0], method.settings[-1]
+def _spoken(curve: Curve) -> str:
+    first, last = curve.settings[0], curve.settings[-1]
     ends = [f"{_time(found.error)} in {quantity(found.cost.median, 's')}" for found in (first, last)]
-    return f"{method.label}: an error of {' to '.join(dict.fromkeys(ends))}."
+    return f"{curve.label}: an error of {' to '.join(dict.fromkeys(ends))}."
 
 
-def _why_not(method: Method) -> str:
+def _why_not(curve: Curve) -> str:
     """Why a method does not reach an error."""
-    sound = [found.error for found in method.settings if found.sound]
+    sound = [found.error for found in curve.settings if found.sound]
     if sound:
         return f"{_time(min(sound))} at best"
-    return f"{number(100 * min(found.wrong for found in method.settings))} % of hits wrong"
+    return f"{number(100 * min(found.wrong for found in curve.settings))} % of hits wrong"
 
 
-def _knob_text(method: Method, setting: Setting) -> str:
+def _knob_text(curve: Curve, setting: Setting) -> str:
     """The setting in brackets, where the method has several."""
-    several = method.knob and len({found.knob for found in method.settings}) > 1
-    return f" ({method.knob} {leaf_text(setting.knob)})" if several else ""
+    several = curve.knob and len({found.knob for found in curve.settings}) > 1
+    return f" ({curve.knob} {leaf_text(setting.knob)})" if several else ""
 
 
 def _target(target: float) -> str:

@@ -12,6 +12,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from harness.report.agreement import draw_gaps, draw_section
+from harness.report.correctness import correctness
 from harness.report.figures import Figure, Key
 from harness.report.proof import sentences_of
 from harness.report.quantity import number, plural
@@ -63,18 +64,6 @@ class BackendsPage:
             for tally in record.document["pairs"]
             if tally["verdicts"]
         ]
-
-    @cached_property
-    def wrong(self) -> dict[tuple[str, str], int]:
-        """How often a backend was wrong beyond help, or failed, on a shape; only those that were."""
-        counts: dict[tuple[str, str], int] = {}
-        for record in self.records:
-            shapes = sorted({tally["shape"] for tally in record.document["pairs"]})
-            for case in record.document["cases"] + record.document["shared"]:
-                for shape in shapes:
-                    for name in case["wrong"].split(" and "):
-                        counts[name, shape] = counts.get((name, shape), 0) + 1
-        return counts
 
     @cached_property
     def summary(self) -> list[Markup]:
@@ -250,9 +239,10 @@ class BackendsPage:
 
     @cached_property
     def speeds(self) -> list[Table]:
-        """What a frame costs, by scene, beside whether the answers are right; who is wrong has no rank."""
+        """What a frame costs, by scene, beside whether the answers are right; only who is right has a rank."""
         names = sorted({record.experiment for record in self.records})
-        tables = (speed_table(name, self.runs, self.wrong, self.pairs) for name in names)
+        known = correctness(self.records)
+        tables = (speed_table(name, self.runs, known) for name in names)
         return [table for table in tables if table is not None]
 
     @cached_property

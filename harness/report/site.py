@@ -20,6 +20,7 @@ from harness.report import palette
 from harness.report.accuracy import AccuracySection, sections
 from harness.report.backends import BackendsPage
 from harness.report.comparison import Comparison
+from harness.report.correctness import newest
 from harness.report.overview import Overview
 from harness.report.pages import (
     ExperimentPage,
@@ -103,7 +104,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     claims = any(page.record.claims for page in pages if not is_case(page))
     compared = newest_comparison(database)
     accuracy, stability = sections(pages), matrix(pages)
-    backends = BackendsPage(comparisons(database), table)
+    backends = BackendsPage(newest(comparisons(database)), table)
     present = (
         (ACCURACY, bool(accuracy)),
         (BACKENDS, bool(backends.records)),

@@ -21,9 +21,11 @@ from markupsafe import Markup
 from harness.measure.limits import Limits, limits
 from harness.measure.selection import matching, which
 from harness.report.criteria import as_criterion
+from harness.report.methods import label_of, methods_of
 from harness.report.pages import ExperimentPage
 from harness.report.quantity import leaf_text, number, plural
 from harness.store.records import VerdictRow
+from harness.vocabulary import MethodName
 
 FOLDER = "stability/"
 Word = Literal["survives", "degrades", "fails", "refuses"]
@@ -38,19 +40,6 @@ MEANINGS: dict[str, str] = {
 }
 _MOST_NAMED = 4
 _LONGEST = 160
-
-
-@dataclass(frozen=True)
-class Method:
-    """A way to find hits, as a column has it."""
-
-    backend: str
-    algorithm: str
-
-    @property
-    def label(self) -> str:
-        """ "predictive", "brute-force (fcl)"."""
-        return self.algorithm if self.algorithm == "predictive" else f"{self.algorithm} ({self.backend})"
 
 
 @dataclass(frozen=True)
@@ -88,15 +77,14 @@ class Case:
         """Those of the case."""
         return matching(self.page.runs, {"shape": self.shape} if self.shape else {})
 
-    @property
-    def methods(self) -> list[Method]:
-        """Those it was flown by, in the order of its points."""
-        pairs = self.runs[["backend", "algorithm"]].drop_duplicates()
-        return [Method(str(backend), str(algorithm)) for backend, algorithm in pairs.itertuples(index=False)]
+    @cached_property
+    def methods(self) -> list[MethodName]:
+        """That of every run."""
+        return methods_of(self.runs)
 
-    def fate(self, method: Method) -> Fate | None:
-        """What became of it by a method; None where it was not flown by it."""
-        mine = matching(self.runs, {"backend": method.backend, "algorithm": method.algorithm})
+    def fate(self, pipeline: str) -> Fate | None:
+        """What became of it by a pipeline; None where it was not flown by it."""
+        mine = self.runs[[method.pipeline == pipeline for method in self.methods]]
         if mine.empty:
             return None
         record = self.page.record
@@ -131,32 +119,32 @@ class Case:
 
 @dataclass(frozen=True)
 class Matrix:
-    """Cases against methods."""
+    """Cases against methods, whatever their shape: `labels` are what their pipelines are called."""
 
     cases: tuple[Case, ...]
-    methods: tuple[Method, ...]
+    labels: Mapping[str, str]
 
     @cached_property
     def rows(self) -> list[tuple[Case, list[Fate | None]]]:
         """Each case with what became of it by each method."""
-        return [(case, [case.fate(method) for method in self.methods]) for case in self.cases]
+        return [(case, [case.fate(pipeline) for pipeline in self.labels]) for case in self.cases]
 
     @property
-    def totals(self) -> list[tuple[Method, Counter[str]]]:
+    def totals(self) -> list[tuple[str, Counter[str]]]:
         """How often which word stands in each column."""
         columns = zip(*(fates for _, fates in self.rows), strict=True)
         return [
-            (method, Counter(fate.word for fate in column if fate))
-            for method, column in zip(self.methods, columns, strict=True)
+            (label, Counter(fate.word for fate in column if fate))
+            for label, column in zip(self.labels.values(), columns, strict=True)
         ]
 
     @property
     def sentences(self) -> list[Markup]:
         """A sentence a method: "predictive survives 34 of 36 cases, degrades in 2 (…), refuses 1 (…)"."""
         said = []
-        for place, (method, counts) in enumerate(self.totals):
+        for place, (label, counts) in enumerate(self.totals):
             text = Markup("<strong>{}</strong> survives {} of {}").format(
-                method.label, number(counts["survives"]), plural(counts.total(), "case")
+                label, number(counts["survives"]), plural(counts.total(), "case")
             )
             for word, phrase in (("degrades", "degrades in"), ("fails", "fails"), ("refuses", "refuses")):
                 if counts[word]:
@@ -172,8 +160,8 @@ def matrix(pages: Sequence[ExperimentPage]) -> Matrix | None:
     cases = [case for page in pages if is_case(page) for case in _cases(page)]
     methods = dict.fromkeys(method for case in cases for method in case.methods)
     # what is exact comes last, as in the files
-    order = sorted(methods, key=lambda method: method.algorithm == "predictive")
-    return Matrix(tuple(cases), tuple(order)) if methods else None
+    order = sorted(methods, key=lambda method: not method.stepped)
+    return Matrix(tuple(cases), {method.pipeline: label_of(method) for method in order}) if methods else None
 
 
 def is_case(page: ExperimentPage) -> bool:

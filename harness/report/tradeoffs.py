@@ -1,7 +1,7 @@
 """Error against run time: what each method costs at each setting of its knob, how far it is right, and who leads.
 
-A *method* is a combination of backend, algorithm and shape; its knob is the time step or, of a predictive one, the
-tolerance. A *scene* is all the rest. Errors below the checked error of the reference mean no more than that.
+A *curve* is a method at all settings of its knob: the time step or, of one that computes events, the tolerance. A
+*scene* is all that is not the method's. Errors below the checked error of the reference mean no more than that.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from harness.report.ranking import times_worse
 from harness.report.series import Arrangement, Cell
 from harness.report.words import setting
 from harness.store.records import ExperimentRecord
-from harness.vocabulary import KNOBS, METHOD_LEAVES
+from harness.vocabulary import KNOBS, METHOD_LEAVES, MethodName
 
 COST, ERROR = "run_seconds", "time_error"
 # Of the reference's hits, how many a method may miss, and how many more it may report, to count as right.
@@ -62,13 +62,18 @@ class Setting:
 
 
 @dataclass(frozen=True, eq=False)
-class Method:
-    """A method with its settings, the cheapest first; `knob` is "" where it has none, because it is exact."""
+class Curve:
+    """A method with its settings, the cheapest first; `label` tells it from the others of its scene."""
 
+    method: MethodName
     label: str
     style: int
-    knob: str
     settings: tuple[Setting, ...]
+
+    @property
+    def knob(self) -> str:
+        """The leaf that is set; "" where there is none, because the method is exact."""
+        return self.method.knob
 
     def cheapest(self, target: float) -> Setting | None:
         """Its cheapest setting that reaches an error."""
@@ -77,7 +82,7 @@ class Method:
     @property
     def order(self) -> Exponent | None:
         """The power of the time step with which the error falls; None of methods without one."""
-        if self.knob != "dt":
+        if not self.method.stepped:
             return None
         fit = fit_exponent({found.knob: [found.error] for found in self.settings if found.sound})
         return fit if fit.n >= 2 else None
@@ -89,18 +94,18 @@ class Tradeoff:
 
     record: ExperimentRecord
     place: str
-    methods: tuple[Method, ...]
+    curves: tuple[Curve, ...]
     floor: float
 
     @property
-    def settings(self) -> list[tuple[Method, Setting]]:
+    def settings(self) -> list[tuple[Curve, Setting]]:
         """Every method at every setting."""
-        return [(method, found) for method in self.methods for found in method.settings]
+        return [(curve, found) for curve in self.curves for found in curve.settings]
 
     @property
     def is_curve(self) -> bool:
         """Whether there is something to draw: a method at several settings."""
-        return any(len(method.settings) >= FEWEST_SETTINGS for method in self.methods)
+        return any(len(curve.settings) >= FEWEST_SETTINGS for curve in self.curves)
 
     @property
     def front(self) -> list[Setting]:
@@ -112,17 +117,17 @@ class Tradeoff:
                 found.append(candidate)
         return found
 
-    def ranked(self, target: float) -> list[tuple[Method, Setting]]:
+    def ranked(self, target: float) -> list[tuple[Curve, Setting]]:
         """The methods that reach an error, each at its cheapest setting, the cheapest method first."""
-        found = [(method, cheapest) for method in self.methods if (cheapest := method.cheapest(target)) is not None]
+        found = [(curve, cheapest) for curve in self.curves if (cheapest := curve.cheapest(target)) is not None]
         return sorted(found, key=lambda entry: entry[1].cost.median)
 
-    def lead(self, target: float) -> list[tuple[Method, Setting, Summary | None]]:
+    def lead(self, target: float) -> list[tuple[Curve, Setting, Summary | None]]:
         """The same, each with how many times it costs what the first costs."""
         ranked = self.ranked(target)
         return [
-            (method, found, None if place == 0 else times_worse(found.cell, ranked[0][1].cell, COST))
-            for place, (method, found) in enumerate(ranked)
+            (curve, found, None if place == 0 else times_worse(found.cell, ranked[0][1].cell, COST))
+            for place, (curve, found) in enumerate(ranked)
         ]
 
     def level(self, behind: Summary | None) -> bool:
@@ -146,10 +151,10 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
     leaves = _differing([cells[0] for cells in scenes.values()], lambda leaf: leaf not in METHOD_LEAVES)
     found = []
     for cells in scenes.values():
-        methods = _methods(cells)
-        if methods:
+        curves = _curves(cells)
+        if curves:
             place = ", ".join(setting(leaf, cells[0].point.parameters.get(leaf)) for leaf in leaves)
-            found.append(Tradeoff(record, place, methods, arrangement.floor(COST)))
+            found.append(Tradeoff(record, place, curves, arrangement.floor(COST)))
     return found
 
 
@@ -157,23 +162,26 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
 _FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
 
 
-def _methods(cells: Sequence[Cell]) -> tuple[Method, ...]:
+def _curves(cells: Sequence[Cell]) -> tuple[Curve, ...]:
     grouped: dict[str, list[Cell]] = {}
     for cell in cells:
-        grouped.setdefault(_key(cell, lambda leaf: leaf in METHOD_LEAVES and leaf not in KNOBS), []).append(cell)
-    leaves = _differing(
-        [members[0] for members in grouped.values()], lambda leaf: leaf in METHOD_LEAVES and leaf not in KNOBS
-    )
-    made: list[Method] = []
+        grouped.setdefault(_key(cell, _is_of_curve), []).append(cell)
+    leaves = _differing([members[0] for members in grouped.values()], _is_of_curve)
+    made: list[Curve] = []
     for members in grouped.values():
         first = members[0].point.parameters
-        knob = "dt" if first.get("algorithm") != "predictive" else "" if first.get("shape") == "sphere" else "tolerance"
-        settings = [found for cell in members if (found := _setting(cell, knob or "tolerance")) is not None]
-        label = "\u00a0· ".join(setting(leaf, first.get(leaf)) for leaf in leaves) or str(first.get("algorithm"))
+        method = MethodName.of(first)
+        settings = [found for cell in members if (found := _setting(cell, method.knob or "tolerance")) is not None]
+        label = "\u00a0· ".join(setting(leaf, first.get(leaf)) for leaf in leaves) or method.algorithm
         if settings:
             ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
-            made.append(Method(label, len(made), knob, ordered))
+            made.append(Curve(method, label, len(made), ordered))
     return tuple(made)
+
+
+def _is_of_curve(leaf: str) -> bool:
+    """Whether a leaf tells one curve from another: it says which method, and does not set its knob."""
+    return leaf in METHOD_LEAVES and leaf not in KNOBS
 
 
 def _setting(cell: Cell, knob: str) -> Setting | None:

@@ -68,13 +68,13 @@ def text_of(html):
 
 
 def test_each_method_is_a_curve_over_its_knob_the_cheapest_setting_first(tradeoff):
-    assert [method.label for method in tradeoff.methods] == ["brute-force", "grid", "tree", "predictive"]
-    for method in tradeoff.methods[:3]:
+    assert [method.label for method in tradeoff.curves] == ["brute-force", "grid", "tree", "predictive"]
+    for method in tradeoff.curves[:3]:
         assert [setting.knob for setting in method.settings] == STEPS
 
 
 def test_the_cheapest_setting_that_is_right_enough_is_chosen(tradeoff):
-    _, grid, tree, predictive = tradeoff.methods
+    _, grid, tree, predictive = tradeoff.curves
     assert grid.cheapest(1e-1).knob == 1 / 15
     assert grid.cheapest(1e-2).knob == 1 / 60
     assert grid.cheapest(1e-3).knob == 1 / 1000
@@ -91,7 +91,7 @@ def test_the_front_has_what_nothing_beats_and_nothing_that_misses_hits(tradeoff)
 
 
 def test_the_order_of_frames_is_one_and_what_misses_hits_has_none(tradeoff):
-    _, grid, tree, predictive = tradeoff.methods
+    _, grid, tree, predictive = tradeoff.curves
     assert grid.order.value == pytest.approx(1.0)
     assert grid.order.enough
     assert tree.order is None

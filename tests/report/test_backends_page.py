@@ -7,6 +7,7 @@ import pytest
 from harness.report.site import render
 from harness.store.database import Database
 from harness.store.records import PointRow
+from harness.vocabulary import algorithms_of
 
 PROOF = {"kind": "common point", "point": [0.5, 0.0, -0.25], "first": [[0, "1"]], "second": [[2, "1/2"], [3, "1/2"]]}
 CASE = {
@@ -52,7 +53,7 @@ def compared(tmp_path_factory):
     path = tmp_path_factory.mktemp("compared") / "results.db"
     leaves = {"shape": "hull", "count": 50, "packing": 0.1}
     seconds = {"fcl": 2e-3, "pybullet": 3e-3, "odd": 1e-3}
-    points = [PointRow(name, leaves | {"backend": name, "algorithm": "native"}) for name in seconds]
+    points = [PointRow(name, leaves | {"backend": name, "algorithm": algorithms_of(name)[0]}) for name in seconds]
     with Database.open(path) as database:
         sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"processor": "one"}, {})
         database.list_experiment(sweep, "peers", "Peers", None, "title: Peers\n", {"swept": ["backend"]}, points)
@@ -87,7 +88,7 @@ def test_a_wrong_backend_is_struck_through_and_the_fastest_right_one_is_best(pag
     assert "struck" in rows["odd, native"]
     assert "best" not in rows["odd, native"]
     assert "wrong 2" in rows["odd, native"]
-    assert "best" in rows["fcl, native"]
+    assert "best" in rows["fcl, brute-force"]
     assert "never wrong in" in rows["pybullet, native"]
 
 
