@@ -14,7 +14,7 @@ from harness.report.drawing import Line, Panel, draw_panels
 from harness.report.figures import Figure, Key
 from harness.report.pages import ExperimentPage
 from harness.report.quantity import Scale, exponent_text, leaf_text, number, power_of_ten, quantity, scale
-from harness.report.series import Arrangement, Cell
+from harness.report.series import Arrangement, MeasuredPoint
 from harness.report.table import Column, Entry, Table, counted, measured, plain, words
 from harness.report.tables import place_of
 from harness.report.tradeoffs import MOST_WRONG, TARGETS, Curve, Setting, Tradeoff, tradeoffs
@@ -67,26 +67,26 @@ class AccuracySection:
     @property
     def free(self) -> bool:
         """Whether bodies answer hits, so that each method flies its own motion."""
-        return any(cell.summary("divergence_time") for cell in self.page.arrangement.cells)
+        return any(point.summary("divergence_time") for point in self.page.arrangement.points)
 
     @cached_property
     def trust(self) -> Markup:
         """How far its reference is right."""
-        cells, said = self.page.arrangement.cells, []
-        if (worst := _largest(cells, "reference_error")) is not None:
+        points, said = self.page.arrangement.points, []
+        if (worst := _largest(points, "reference_error")) is not None:
             said.append(
                 Markup(
                     "Of the reference's {} hits a sample was checked: its times are right to <strong>{}</strong>."
-                ).format(number(_largest(cells, "reference_hits")), _time(worst))
+                ).format(number(_largest(points, "reference_hits")), _time(worst))
             )
-        if (agrees := _largest(cells, "reference_divergence_time")) is not None:
+        if (agrees := _largest(points, "reference_divergence_time")) is not None:
             said.append(
                 Markup(
                     "Flown again in another unit of length, and so rounded otherwise, the reference shares its hits "
                 )
                 + Markup("for <strong>{}</strong>").format(_time(agrees))
             )
-            apart = _largest(cells, "reference_position_error")
+            apart = _largest(points, "reference_position_error")
             said[-1] += Markup(", and its places to {} m.").format(number(apart)) if apart is not None else Markup(".")
         return Markup(" ").join(said)
 
@@ -131,8 +131,8 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
 
 def scene_of(tradeoff: Tradeoff) -> str:
     """The scene in a phrase."""
-    first = dict(tradeoff.curves[0].settings[0].cell.point.parameters)
-    shapes = {s.cell.point.parameters.get("shape") for _, s in tradeoff.settings}
+    first = dict(tradeoff.curves[0].settings[0].point.parameters)
+    shapes = {s.point.parameters.get("shape") for _, s in tradeoff.settings}
     first["shape"] = next((shape for shape in ("mesh", "hull", "sphere") if shape in shapes), None)
     if first.get("count") is None and isinstance(first.get("bodies"), list):
         first["count"] = len(first["bodies"])
@@ -234,7 +234,7 @@ def hits(found: Sequence[Tradeoff]) -> Table:
     settings = [(tradeoff, curve, entry) for tradeoff in found for curve, entry in tradeoff.settings]
     unit = scale([entry.cost.median for _, _, entry in settings], "s")
     places = any(tradeoff.place for tradeoff in found)
-    expected = any(entry.cell.summary("missed_hits_expected") for _, _, entry in settings)
+    expected = any(entry.point.summary("missed_hits_expected") for _, _, entry in settings)
     rows = []
     for tradeoff, curve, entry in settings:
         row = [words(curve.label, curve.style)]
@@ -242,10 +242,10 @@ def hits(found: Sequence[Tradeoff]) -> Table:
         knob = f"{curve.knob} {leaf_text(entry.knob)}" if curve.knob else "exact"
         row += [Entry(knob, numeric=False, mark="keep", sort=entry.knob)]
         row += [Entry(unit.text(entry.cost.median), sort=plain(entry.cost.median))]
-        row += [_seconds(entry.cell.median(name)) for name in ("time_error", "time_error_95")]
-        row += [_share(entry.cell.median(name)) for name in ("missed_hits", "extra_hits")]
-        row += [_share(entry.cell.median("missed_hits_expected"), flagged=False)] if expected else []
-        row += [counted(entry.cell.median("reference_hits"))]
+        row += [_seconds(entry.point.median(name)) for name in ("time_error", "time_error_95")]
+        row += [_share(entry.point.median(name)) for name in ("missed_hits", "extra_hits")]
+        row += [_share(entry.point.median("missed_hits_expected"), flagged=False)] if expected else []
+        row += [counted(entry.point.median("reference_hits"))]
         rows.append(tuple(row))
     columns = [Column("Method", numeric=False)]
     columns += [Column("Scene", numeric=False)] if places else []
@@ -261,13 +261,13 @@ def hits(found: Sequence[Tradeoff]) -> Table:
 
 def followed(arrangement: Arrangement) -> Table:
     """In free flight: until when every method shares the reference's hits, how far it is off, and what it conserves."""
-    shown = [name for name in _FREE if any(cell.summary(name) for cell in arrangement.cells)]
-    units = {name: scale([cell.median(name) for cell in arrangement.cells], metric_unit(name)) for name in shown}
+    shown = [name for name in _FREE if any(point.summary(name) for point in arrangement.points)]
+    units = {name: scale([point.median(name) for point in arrangement.points], metric_unit(name)) for name in shown}
     rows = []
     for series in arrangement.series:
-        for cell, x in zip(series.cells, series.x, strict=True):
+        for point, x in zip(series.points, series.x, strict=True):
             row = [words(place_of(arrangement, series, x), series.style)]
-            rows.append(tuple(row + [measured(cell, name, units[name]) for name in shown]))
+            rows.append(tuple(row + [measured(point, name, units[name]) for name in shown]))
     titles = [metric_title(name) for name in shown]
     columns = [
         Column(f"{title[:1].upper()}{title[1:]}", units[name].symbol)
@@ -289,8 +289,8 @@ _FREE = (
 )  # fmt: skip
 
 
-def _largest(cells: Sequence[Cell], metric: str) -> float | None:
-    return max((value for cell in cells if math.isfinite(value := cell.median(metric))), default=None)
+def _largest(points: Sequence[MeasuredPoint], metric: str) -> float | None:
+    return max((value for point in points if math.isfinite(value := point.median(metric))), default=None)
 
 
 def _line(curve: Curve, unit: Scale) -> Line:

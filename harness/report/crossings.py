@@ -46,8 +46,8 @@ def _sentence(x: str, metric: str, a: Series, b: Series, crossing: Crossover) ->
 
 def _costs(series: Series, metric: str) -> dict[float, dict[tuple[int, str], float]]:
     pairs: Sequence[tuple[float, dict[tuple[int, str], float]]] = [
-        (float(x), {place: value for place, value in cell.by_place(metric).items() if value > 0})
-        for cell, x in zip(series.cells, series.x, strict=True)
-        if not cell.disagrees
+        (float(x), {place: value for place, value in point.by_place(metric).items() if value > 0})
+        for point, x in zip(series.points, series.x, strict=True)
+        if not point.disagrees
     ]
     return {x: costs for x, costs in pairs if costs and math.isfinite(x)}

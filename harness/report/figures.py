@@ -107,11 +107,11 @@ def published_figure(rows: Sequence[Row], source: str) -> Figure | None:
     if not leaves or len({row.leaves[leaves[0]] for row in rows}) < 2:
         return None
     leaf, panels = leaves[0], []
-    series = {row.series: row.style for row in rows if row.cell}
+    series = {row.series: row.style for row in rows if row.point}
     for metric in metrics_of(rows):
         theirs = {float(row.leaves[leaf]): row.numbers[metric] for row in rows if metric in row.numbers}
         ours = {
-            name: {float(row.leaves[leaf]): row.ours(metric) for row in rows if row.series == name and row.cell}
+            name: {float(row.leaves[leaf]): row.ours(metric) for row in rows if row.series == name and row.point}
             for name in series
         }
         unit = scale(
@@ -135,7 +135,7 @@ def published_figure(rows: Sequence[Row], source: str) -> Figure | None:
 
 
 def _figure(arrangement: Arrangement, metrics: tuple[str, ...]) -> Figure:
-    unit = scale([cell.median(metric) for cell in arrangement.cells for metric in metrics], metric_unit(metrics[0]))
+    unit = scale([point.median(metric) for point in arrangement.points for metric in metrics], metric_unit(metrics[0]))
     names = arrangement.panels[:_MOST_PANELS]
     by_metric = len(metrics) > 1
     panels = []
@@ -178,8 +178,8 @@ def _panel(arrangement: Arrangement, name: str, metrics: Sequence[str], lines: S
 
 def _line(series: Series, metric: str, unit: Scale, arrangement: Arrangement) -> Line:
     x, y, low, high = [], [], [], []
-    for cell, value in zip(series.cells, series.x, strict=True):
-        found = cell.summary(metric)
+    for point, value in zip(series.points, series.x, strict=True):
+        found = point.summary(metric)
         if found is None:
             continue
         x.append(float(value) if arrangement.numeric else float(arrangement.x_values.index(value)))
@@ -208,7 +208,7 @@ def _ranges(panel: Panel) -> bool:
 
 
 def _measured(arrangement: Arrangement, metric: str) -> bool:
-    return any(cell.summary(metric) for cell in arrangement.cells)
+    return any(point.summary(metric) for point in arrangement.points)
 
 
 def _axis_title(metric: str, unit: Scale) -> str:
@@ -219,7 +219,7 @@ def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool
     said = []
     shape = "band" if arrangement.numeric else "bar"
     if any(map(is_clock, metrics)):
-        found = [cell.summary(metric) for cell in arrangement.cells for metric in metrics]
+        found = [point.summary(metric) for point in arrangement.points for metric in metrics]
         counts = [summary.n for summary in found if summary]
         if max(counts) == 1:
             said.append("One run a point: no interval.")

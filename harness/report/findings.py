@@ -15,7 +15,7 @@ from harness.report.criteria import refusals
 from harness.report.crossings import crossing_sentences
 from harness.report.quantity import exponent_text, number, plural, quantity
 from harness.report.ranking import Growth, Ranked, rank, times_worse
-from harness.report.series import Arrangement, Cell, Series
+from harness.report.series import Arrangement, MeasuredPoint, Series
 from harness.report.tables import SLOW_ELAPSED, elapsed_ratio
 from harness.report.words import SCENE_LEAVES, is_clock, metric_title, metric_unit, more_is_better, scene_text, setting
 from harness.store.records import ExperimentRecord, VerdictRow
@@ -49,7 +49,7 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
         *_change(arrangement),
     ]
     sentences += _outcomes(record.claims, "claim")
-    if not sentences and any(not cell.good.empty for cell in arrangement.cells):
+    if not sentences and any(not point.good.empty for point in arrangement.points):
         sentences += _single(arrangement)
     kept = [row for row in record.expectations if row.verdict == "holds"]
     if record.expectations and len(kept) == len(record.expectations):
@@ -70,9 +70,9 @@ def stability(arrangement: Arrangement) -> str:
     """ "stable" where nine points in ten have medians known to 5 %, "noisy" where not, "" where it cannot be said."""
     judged = [
         summary.stable
-        for cell in arrangement.cells
+        for point in arrangement.points
         for metric in arrangement.metrics
-        if is_clock(metric) and (summary := cell.summary(metric)) is not None and summary.stable is not None
+        if is_clock(metric) and (summary := point.summary(metric)) is not None and summary.stable is not None
     ]
     if not judged:
         return ""
@@ -100,7 +100,7 @@ def _fastest(arrangement: Arrangement) -> list[Markup]:
 
 def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
     best, level = ranked[0], [entry for entry in ranked if entry.level]
-    where = Markup("For {}: ").format(_scene(arrangement, best.cell, panel, x))
+    where = Markup("For {}: ").format(_scene(arrangement, best.point, panel, x))
     most = "highest" if more_is_better(metric) else "lowest"
     value = quantity(best.median, metric_unit(metric))
     if len(level) > 1:
@@ -126,9 +126,9 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
     return text + Markup(".")
 
 
-def _scene(arrangement: Arrangement, cell: Cell, panel: str, x: object) -> str:
+def _scene(arrangement: Arrangement, point: MeasuredPoint, panel: str, x: object) -> str:
     """The scene of a point, and what else of it is swept."""
-    parts = [scene_text(cell.point.parameters)]
+    parts = [scene_text(point.parameters)]
     if arrangement.x and x is not None and arrangement.x not in SCENE_LEAVES:
         parts.append(setting(arrangement.x, x))
     if panel and arrangement.panel_leaf not in SCENE_LEAVES:
@@ -142,7 +142,7 @@ def _change(arrangement: Arrangement) -> list[Markup]:
         return []
     series, found = arrangement.series[0], []
     for metric in arrangement.metrics:
-        seen = [(cell, x) for cell, x in zip(series.cells, series.x, strict=True) if cell.summary(metric)]
+        seen = [(point, x) for point, x in zip(series.points, series.x, strict=True) if point.summary(metric)]
         if len(seen) < 2:
             continue
         (first, low), (last, high) = seen[0], seen[-1]
@@ -213,21 +213,21 @@ _WORDS = (("holds", "hold"), ("fails", "fail"), ("undecided", "undecided"))
 
 def _single(arrangement: Arrangement) -> list[Markup]:
     """The plain numbers, where there is nothing to compare."""
-    cell = next(cell for cell in arrangement.cells if not cell.good.empty)
+    point = next(point for point in arrangement.points if not point.good.empty)
     metrics = [*arrangement.metrics, "run_seconds", "frames_per_second", "events"]
     parts = [
         Markup("{} <strong>{}</strong>").format(
-            metric_title(metric), quantity(cell.median(metric), metric_unit(metric))
+            metric_title(metric), quantity(point.median(metric), metric_unit(metric))
         )
         for metric in dict.fromkeys(metrics)
-        if cell.summary(metric)
+        if point.summary(metric)
     ]
     return [Markup("{}.").format(Markup(", ").join(parts))] if parts else []
 
 
 def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
-    ended = Counter(str(status) for cell in arrangement.cells for status in cell.runs["status"])
-    refused = sum(refusals(record, cell.runs) for cell in arrangement.cells)
+    ended = Counter(str(status) for point in arrangement.points for status in point.runs["status"])
+    refused = sum(refusals(record, point.runs) for point in arrangement.points)
     total, good = sum(ended.values()), ended.pop("ok", 0) + refused
     ended["rejected"] -= refused
     ended = +ended
@@ -239,7 +239,7 @@ def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Mar
                 number(total - good), plural(total, "run"), kinds
             )
         )
-    missing = sum(cell.runs.empty for cell in arrangement.cells)
+    missing = sum(point.runs.empty for point in arrangement.points)
     if missing:
         found.append(
             Markup("<strong>{}</strong> not run yet; the same sweep command does the rest.").format(
@@ -251,25 +251,25 @@ def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Mar
 
 def _warnings(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
     found = []
-    said: dict[str, list[Cell]] = {}
-    for cell in arrangement.cells:
-        for text in dict.fromkeys(cell.point.plan.get("warnings") or ()):
-            said.setdefault(str(text), []).append(cell)
-    for text, cells in said.items():
-        whole = len(cells) == len(arrangement.cells)
-        whom = "every point" if whole else f"{number(len(cells))} of {plural(len(arrangement.cells), 'point')}"
+    said: dict[str, list[MeasuredPoint]] = {}
+    for point in arrangement.points:
+        for text in dict.fromkeys(point.row.plan.get("warnings") or ()):
+            said.setdefault(str(text), []).append(point)
+    for text, points in said.items():
+        whole = len(points) == len(arrangement.points)
+        whom = "every point" if whole else f"{number(len(points))} of {plural(len(arrangement.points), 'point')}"
         found.append(Markup("<strong>{}</strong> ({}).").format(_capital(text.rstrip(".")), whom))
-    disagreeing = [cell for cell in arrangement.cells if cell.disagrees]
+    disagreeing = [point for point in arrangement.points if point.disagrees]
     if disagreeing:
         found.append(
             Markup(
                 "<strong>{} hits that the reference does not, or misses some</strong>: struck through, never ranked."
             ).format(f"{plural(len(disagreeing), 'point')} {'reports' if len(disagreeing) == 1 else 'report'}")
         )
-    escaped = [cell for cell in arrangement.cells if (cell.values("escaped") > 0).any()]
+    escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
     if escaped:
         found.append(Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point")))
-    if any("timing_grade" in cell.good and not cell.good["timing_grade"].all() for cell in arrangement.cells):
+    if any("timing_grade" in point.good and not point.good["timing_grade"].all() for point in arrangement.points):
         found.append(
             Markup(
                 "<strong>Some runs are not timing-grade</strong>: they shared a machine with other runs. "
@@ -277,23 +277,23 @@ def _warnings(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup
             )
         )
     asked = arrangement.metrics if (record.specification.get("report") or {}).get("y") else ()
-    unreported = [name for name in asked if not any(len(cell.values(name)) for cell in arrangement.cells)]
-    if unreported and any(not cell.good.empty for cell in arrangement.cells):
+    unreported = [name for name in asked if not any(len(point.values(name)) for point in arrangement.points)]
+    if unreported and any(not point.good.empty for point in arrangement.points):
         found.append(Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported)))
     if record.sweep.finished is None:
         found.append(Markup("<strong>The sweep did not come to its end</strong>; the same command does the rest."))
-    where = {machine for cell in arrangement.cells for machine in cell.runs["machine"]}
+    where = {machine for point in arrangement.points for machine in point.runs["machine"]}
     if len(where) > 1:
         found.append(
             Markup("<strong>Runs come from {} machines</strong>: times compare only within one.").format(len(where))
         )
-    busy = [cell for cell in arrangement.cells if elapsed_ratio(cell) > SLOW_ELAPSED]
+    busy = [point for point in arrangement.points if elapsed_ratio(point) > SLOW_ELAPSED]
     if busy:
         found.append(
             Markup(
                 "The machine was busy: elapsed time is more than {} times the CPU time in {} of {}. "
                 "CPU time leads on this page."
-            ).format(f"{SLOW_ELAPSED:g}", number(len(busy)), plural(len(arrangement.cells), "point"))
+            ).format(f"{SLOW_ELAPSED:g}", number(len(busy)), plural(len(arrangement.points), "point"))
         )
     if stability(arrangement) == "noisy":
         found.append(

@@ -67,7 +67,7 @@ class ExperimentPage:
     @cached_property
     def growths(self) -> list[Growth]:
         """Exponents of its metrics, and of the counts that change."""
-        medians = {name: {cell.median(name) for cell in self.arrangement.cells} for name in _COUNTS}
+        medians = {name: {point.median(name) for point in self.arrangement.points} for name in _COUNTS}
         counts = [name for name, values in medians.items() if sum(value > 0 for value in values) > 1]
         return growth(self.arrangement, tuple(dict.fromkeys((*self.arrangement.metrics, *counts))))
 
@@ -184,7 +184,7 @@ class ExperimentPage:
         """What is swept, how often, where: one line."""
         parts = []
         for leaf in self.record.specification.get("swept") or ():
-            values = list({leaf_text(cell.point.parameters.get(leaf)): 0 for cell in self.arrangement.cells})
+            values = list({leaf_text(point.parameters.get(leaf)): 0 for point in self.arrangement.points})
             said = ", ".join(values) if len(values) <= _MOST_VALUES else f"{values[0]} … {values[-1]}"
             parts.append(f"{leaf} {said}" + (f" ({len(values)} values)" if len(values) > _MOST_VALUES else ""))
         repeats = sorted({int(count) for count in self.runs.groupby("point").size()}) if len(self.runs) else [0]

@@ -28,11 +28,21 @@ DEFAULT_METRICS = ("pair_seconds", "box_seconds")
 
 
 @dataclass(frozen=True, eq=False)
-class Cell:
+class MeasuredPoint:
     """One point of an experiment with all its runs, failed ones included; `runs` has a row a run, by repeat."""
 
-    point: PointRow
+    row: PointRow
     runs: pd.DataFrame
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        """Its leaves, and what is derived from them."""
+        return self.row.parameters
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """Those of its leaves that are not the method's."""
+        return {leaf: value for leaf, value in self.parameters.items() if leaf not in METHOD_LEAVES}
 
     @cached_property
     def good(self) -> pd.DataFrame:
@@ -86,24 +96,26 @@ class Cell:
 
 @dataclass(frozen=True)
 class Series:
-    """Cells that differ in x only. `style` numbers the colour and marker, the same on all of a page."""
+    """Points that differ in x only. `style` numbers the colour and marker, the same on all of a page."""
 
     label: str
     style: int
     panel: str
-    cells: tuple[Cell, ...]
+    points: tuple[MeasuredPoint, ...]
     x: tuple[Any, ...]
 
-    def at(self, x: object) -> Cell | None:
-        """The cell at a value of x."""
+    def at(self, x: object) -> MeasuredPoint | None:
+        """The point at a value of x."""
         wanted = _hashable(x)
-        return next((cell for cell, value in zip(self.cells, self.x, strict=True) if _hashable(value) == wanted), None)
+        return next(
+            (point for point, value in zip(self.points, self.x, strict=True) if _hashable(value) == wanted), None
+        )
 
     def shares_scenes_with(self, other: Series) -> bool:
         """Whether the two are methods put to the same scenes, wherever they share an x."""
-        theirs = dict(zip(map(_hashable, other.x), other.cells, strict=True))
-        pairs = [(cell, theirs.get(_hashable(x))) for cell, x in zip(self.cells, self.x, strict=True)]
-        return all(_scene(mine.point) == _scene(match.point) for mine, match in pairs if match is not None)
+        theirs = dict(zip(map(_hashable, other.x), other.points, strict=True))
+        pairs = [(point, theirs.get(_hashable(x))) for point, x in zip(self.points, self.x, strict=True)]
+        return all(mine.scene == match.scene for mine, match in pairs if match is not None)
 
 
 @dataclass(frozen=True)
@@ -139,46 +151,46 @@ class Arrangement:
             return self.series
         line = self.series[0]
         return tuple(
-            Series(setting(self.x, value), place, line.panel, (cell,), (value,))
-            for place, (cell, value) in enumerate(zip(line.cells, line.x, strict=True))
+            Series(setting(self.x, value), place, line.panel, (point,), (value,))
+            for place, (point, value) in enumerate(zip(line.points, line.x, strict=True))
         )
 
     @property
-    def cells(self) -> list[Cell]:
-        """All cells, series by series."""
-        return [cell for series in self.series for cell in series.cells]
+    def points(self) -> list[MeasuredPoint]:
+        """All points, series by series."""
+        return [point for series in self.series for point in series.points]
 
 
 def arrange(record: ExperimentRecord, runs: pd.DataFrame, controls: Sequence[ControlRecord] = ()) -> Arrangement:
     """Arrange an experiment's points, its runs (rows of the run table that belong to it), and their controls."""
     by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
     nothing = runs.iloc[:0]
-    cells = [Cell(point, by_point.get(point.key, nothing)) for point in record.points]
+    points = [MeasuredPoint(row, by_point.get(row.key, nothing)) for row in record.points]
     report: Mapping[str, Any] = record.specification.get("report") or {}
-    swept = [leaf for leaf in record.specification.get("swept") or () if _spread(cells, leaf) > 1]
-    x = _x_leaf(cells, swept, report.get("x"))
-    others = [leaf for leaf in swept if leaf != x and not _follows(cells, leaf, x)]
-    panel_leaf = _panel_leaf(cells, others)
-    lines: dict[str, list[Cell]] = {}
-    for cell in cells:
-        lines.setdefault(_key(cell, others), []).append(cell)
+    swept = [leaf for leaf in record.specification.get("swept") or () if _spread(points, leaf) > 1]
+    x = _x_leaf(points, swept, report.get("x"))
+    others = [leaf for leaf in swept if leaf != x and not _follows(points, leaf, x)]
+    panel_leaf = _panel_leaf(points, others)
+    lines: dict[str, list[MeasuredPoint]] = {}
+    for point in points:
+        lines.setdefault(_key(point, others), []).append(point)
     names = [leaf for leaf in others if leaf != panel_leaf]
     styles: dict[str, int] = {}
     series = []
     for members in lines.values():
-        first = members[0].point.parameters
+        first = members[0].parameters
         label = _label(first, names)
-        members = sorted(members, key=lambda cell: _order(cell.point.parameters.get(x))) if x else members
+        members = sorted(members, key=lambda point: _order(point.parameters.get(x))) if x else members
         series.append(
             Series(
                 label,
                 styles.setdefault(label, len(styles)),
                 setting(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
                 tuple(members),
-                tuple(cell.point.parameters.get(x) for cell in members) if x else tuple(None for _ in members),
+                tuple(point.parameters.get(x) for point in members) if x else tuple(None for _ in members),
             )
         )
-    values = {_hashable(cell.point.parameters.get(x)): cell.point.parameters.get(x) for cell in cells} if x else {}
+    values = {_hashable(point.parameters.get(x)): point.parameters.get(x) for point in points} if x else {}
     y = report.get("y") or DEFAULT_METRICS
     return Arrangement(
         x,
@@ -186,18 +198,18 @@ def arrange(record: ExperimentRecord, runs: pd.DataFrame, controls: Sequence[Con
         tuple(series),
         panel_leaf,
         (y,) if isinstance(y, str) else tuple(y),
-        *_floors(cells, controls),
+        *_floors(points, controls),
     )
 
 
-def _floors(cells: Sequence[Cell], controls: Sequence[ControlRecord]) -> tuple[dict[str, float], int]:
+def _floors(points: Sequence[MeasuredPoint], controls: Sequence[ControlRecord]) -> tuple[dict[str, float], int]:
     """The noise floor of every clock that the controls report, and how many pairs there are."""
-    of_point = {cell.point.key: cell for cell in cells}
+    of_point = {point.row.key: point for point in points}
     pairs: dict[str, list[tuple[float, float]]] = {}
     for control in controls:
-        cell = of_point.get(control.point)
-        for metric, value in control.metrics.items() if cell else ():
-            first = cell.by_place(metric).get((control.repeat, control.machine)) if cell else None
+        point = of_point.get(control.point)
+        for metric, value in control.metrics.items() if point else ():
+            first = point.by_place(metric).get((control.repeat, control.machine)) if point else None
             if first is not None:
                 pairs.setdefault(metric, []).append((first, value))
     floors = {metric: noise_floor(*zip(*found, strict=True)) for metric, found in pairs.items()}
@@ -205,25 +217,21 @@ def _floors(cells: Sequence[Cell], controls: Sequence[ControlRecord]) -> tuple[d
     return known, max(map(len, pairs.values()), default=0)
 
 
-def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> str | None:
-    if wanted and _spread(cells, wanted) > 0:
+def _x_leaf(points: Sequence[MeasuredPoint], swept: Sequence[str], wanted: str | None) -> str | None:
+    if wanted and _spread(points, wanted) > 0:
         return wanted
-    numeric = [leaf for leaf in swept if all(_is_number(cell.point.parameters.get(leaf)) for cell in cells)]
+    numeric = [leaf for leaf in swept if all(_is_number(point.parameters.get(leaf)) for point in points)]
     # where no leaf is a number, what the method is tells more as series than along x
     return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD_LEAVES] or swept), None)
 
 
-def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
+def _panel_leaf(points: Sequence[MeasuredPoint], others: Sequence[str]) -> str | None:
     scene = [leaf for leaf in others if leaf not in METHOD_LEAVES]
     mixed = 0 < len(scene) < len(others)  # methods are compared on the same scene
-    if len(others) < 2 or not (mixed or len({_key(cell, others) for cell in cells}) > MOST_IN_A_PANEL):
+    if len(others) < 2 or not (mixed or len({_key(point, others) for point in points}) > MOST_IN_A_PANEL):
         return None
     scene = scene or list(others)
-    return min(scene, key=lambda leaf: (_spread(cells, leaf) > 8, -_spread(cells, leaf)))
-
-
-def _scene(point: PointRow) -> dict[str, Any]:
-    return {leaf: value for leaf, value in point.parameters.items() if leaf not in METHOD_LEAVES}
+    return min(scene, key=lambda leaf: (_spread(points, leaf) > 8, -_spread(points, leaf)))
 
 
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
@@ -232,20 +240,20 @@ def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
     return "\u00a0· ".join(setting(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
 
 
-def _follows(cells: Sequence[Cell], leaf: str, x: str | None) -> bool:
+def _follows(points: Sequence[MeasuredPoint], leaf: str, x: str | None) -> bool:
     """Whether x determines the leaf, as `faces` does the mesh: it is then no series of its own."""
     if x is None:
         return False
-    return len({_key(cell, (x, leaf)) for cell in cells}) == _spread(cells, x)
+    return len({_key(point, (x, leaf)) for point in points}) == _spread(points, x)
 
 
-def _spread(cells: Sequence[Cell], leaf: str) -> int:
+def _spread(points: Sequence[MeasuredPoint], leaf: str) -> int:
     """How many values the leaf takes."""
-    return len({_key(cell, (leaf,)) for cell in cells if leaf in cell.point.parameters})
+    return len({_key(point, (leaf,)) for point in points if leaf in point.parameters})
 
 
-def _key(cell: Cell, leaves: Sequence[str]) -> str:
-    return json.dumps([cell.point.parameters.get(leaf) for leaf in leaves], sort_keys=True)
+def _key(point: MeasuredPoint, leaves: Sequence[str]) -> str:
+    return json.dumps([point.parameters.get(leaf) for leaf in leaves], sort_keys=True)
 
 
 def _hashable(value: object) -> object:

@@ -46,7 +46,7 @@ def speed_table(name: str, runs: pd.DataFrame, known: Correctness) -> Table | No
     unit = scale(list(medians.values()), "s")
     methods = sorted({method for _, method in medians})
     columns = [Column("Method", numeric=False)]
-    cells: dict[MethodName, list[Entry]] = {method: [] for method in methods}
+    entries: dict[MethodName, list[Entry]] = {method: [] for method in methods}
     for place in sorted({place for place, _ in medians}):
         columns.append(Column(_scene_text(scenes, place), unit.symbol))
         right = [seconds for (at, method), seconds in medians.items() if at == place and known.is_right(method)]
@@ -55,9 +55,9 @@ def speed_table(name: str, runs: pd.DataFrame, known: Correctness) -> Table | No
             seconds = medians.get((place, method), math.nan)
             mark = "best" if seconds == best and known.is_right(method) else ""
             text = "not run" if math.isnan(seconds) else unit.text(seconds)
-            cells[method].append(Entry(text, mark=mark, struck=known.is_wrong(method), sort=plain(seconds)))
+            entries[method].append(Entry(text, mark=mark, struck=known.is_wrong(method), sort=plain(seconds)))
     columns.append(Column("Correctness", numeric=False))
-    rows = tuple((words(_label(method, methods)), *cells[method], _correctness(method, known)) for method in methods)
+    rows = tuple((words(_label(method, methods)), *entries[method], _correctness(method, known)) for method in methods)
     return Table(name, _NOTE, tuple(columns), rows)
 
 

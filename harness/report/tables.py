@@ -9,7 +9,7 @@ from harness.measure.statistics import CONFIDENCE, ENOUGH_RANGE
 from harness.report.published import Recovered, Row, metrics_of
 from harness.report.quantity import exponent_text, leaf_text, number, plural, scale
 from harness.report.ranking import Growth, Ranked, rank
-from harness.report.series import Arrangement, Cell, Series
+from harness.report.series import Arrangement, MeasuredPoint, Series
 from harness.report.table import Column, Entry, Group, Table, counted, failure, measured, plain, words
 from harness.report.words import is_ranked, leaf_title, metric_title, metric_unit, setting
 
@@ -36,7 +36,7 @@ def comparisons(arrangement: Arrangement) -> list[Table]:
     if len(arrangement.series) < 2:
         return []
     measured_ones = [
-        metric for metric in arrangement.metrics if any(cell.summary(metric) for cell in arrangement.cells)
+        metric for metric in arrangement.metrics if any(point.summary(metric) for point in arrangement.points)
     ]
     return [_comparison(arrangement, metric) for metric in measured_ones]
 
@@ -56,10 +56,10 @@ def clocks_table(arrangement: Arrangement) -> Table | None:
         "was busy with something else."
     )
     table = _points_table(arrangement, "CPU and elapsed time", note, _CLOCKS)
-    if table is None or not any(cell.summary("run_seconds_elapsed") for cell in arrangement.cells):
+    if table is None or not any(point.summary("run_seconds_elapsed") for point in arrangement.points):
         return table
-    cells = arrangement.cells[:_MOST_ROWS]
-    rows = tuple((*row, _elapsed(cell)) for row, cell in zip(table.rows, cells, strict=True))
+    points = arrangement.points[:_MOST_ROWS]
+    rows = tuple((*row, _elapsed(point)) for row, point in zip(table.rows, points, strict=True))
     return Table(table.name, table.note, (*table.columns, Column("elapsed / CPU")), rows)
 
 
@@ -68,10 +68,10 @@ def others_table(arrangement: Arrangement) -> Table | None:
     return _points_table(arrangement, "Hits, errors and memory", "Medians over the repeats.", _OTHERS)
 
 
-def elapsed_ratio(cell: Cell) -> float:
+def elapsed_ratio(point: MeasuredPoint) -> float:
     """Elapsed over CPU time of a point's runs, nan where it is not known."""
-    cpu = cell.median("run_seconds")
-    return cell.median("run_seconds_elapsed") / cpu if cpu > 0 else math.nan
+    cpu = point.median("run_seconds")
+    return point.median("run_seconds_elapsed") / cpu if cpu > 0 else math.nan
 
 
 def exponents_table(growths: Sequence[Growth], arrangement: Arrangement) -> Table:
@@ -81,7 +81,7 @@ def exponents_table(growths: Sequence[Growth], arrangement: Arrangement) -> Tabl
     for entry in growths:
         found = entry.exponent
         row = [words(entry.series.label, entry.series.style)] if several else []
-        row += _panel_entry(arrangement, entry.series.cells[0])
+        row += _panel_entry(arrangement, entry.series.points[0])
         row += [words(entry.metric)] if len(metrics) > 1 or not several else []
         if found.enough:
             row.append(Entry(exponent_text(found.value), sort=plain(found.value)))
@@ -110,8 +110,8 @@ def failures_table(arrangement: Arrangement) -> Table | None:
     """Every run that did not come to its end, with its reason; equal ones of a point together."""
     rows = []
     for series in arrangement.series:
-        for cell, x in zip(series.cells, series.x, strict=True):
-            bad = cell.runs[cell.runs["status"] != "ok"]
+        for point, x in zip(series.points, series.x, strict=True):
+            bad = point.runs[point.runs["status"] != "ok"]
             if bad.empty:
                 continue
             for (status, reason), group in bad.groupby(["status", "reason"], dropna=False, sort=True):
@@ -147,7 +147,7 @@ def published_table(rows: Sequence[Row], source: str) -> Table:
         )
         for metric in metrics
     }
-    several = len({row.series for row in rows if row.cell}) > 1
+    several = len({row.series for row in rows if row.point}) > 1
     columns = [Column("Row", numeric=False)] + ([Column("Ours is", numeric=False)] if several else [])
     groups = [Group("", len(columns))]
     for metric in metrics:
@@ -157,7 +157,7 @@ def published_table(rows: Sequence[Row], source: str) -> Table:
     for row in rows:
         line = [words(row.name)]
         if several:
-            line.append(words(row.series or "not measured", row.style if row.cell else None))
+            line.append(words(row.series or "not measured", row.style if row.point else None))
         for metric in metrics:
             theirs = row.numbers.get(metric)
             ours = row.ours(metric)
@@ -165,8 +165,8 @@ def published_table(rows: Sequence[Row], source: str) -> Table:
             line.append(Entry(units[metric].text(theirs), sort=plain(theirs)))
             line.append(
                 Entry(units[metric].text(ours), sort=plain(ours))
-                if row.cell and not math.isnan(ours)
-                else failure(row.cell)
+                if row.point and not math.isnan(ours)
+                else failure(row.point)
             )
             line.append(Entry("–" if math.isnan(ratio) else f"{number(ratio)}×", sort=plain(ratio)))
         lines.append(tuple(line))
@@ -219,7 +219,7 @@ def place_of(arrangement: Arrangement, series: Series, x: object) -> str:
 
 def _comparison(arrangement: Arrangement, metric: str) -> Table:
     xs = arrangement.x_values or (None,)
-    unit = scale([cell.median(metric) for cell in arrangement.cells], metric_unit(metric))
+    unit = scale([point.median(metric) for point in arrangement.points], metric_unit(metric))
     ranked, rows = is_ranked(metric), []
     for panel in arrangement.panels:
         lines = [series for series in arrangement.series if series.panel == panel]
@@ -228,7 +228,7 @@ def _comparison(arrangement: Arrangement, metric: str) -> Table:
             for x in xs
         ]
         for series in lines:
-            row = [words(series.label, series.style), *_panel_entry(arrangement, series.cells[0])]
+            row = [words(series.label, series.style), *_panel_entry(arrangement, series.points[0])]
             row += [
                 measured(series.at(x), metric, unit, _mark(places.get(series.label)))
                 for x, places in zip(xs, ranks, strict=True)
@@ -243,7 +243,7 @@ def _comparison(arrangement: Arrangement, metric: str) -> Table:
     note = f"{metric}{units}, {_medians(arrangement)}."
     if ranked:
         note += " Bold: best, or not to be told from it. Tint: times worse than the best."
-    if any(cell.disagrees for cell in arrangement.cells):
+    if any(point.disagrees for point in arrangement.points):
         note += " Struck through: disagrees with the reference, and is not ranked."
     return Table(_heading(metric), note, tuple(columns), tuple(rows))
 
@@ -252,10 +252,10 @@ def _panel_column(arrangement: Arrangement) -> list[Column]:
     return [Column(arrangement.panel_leaf, numeric=False)] if arrangement.panel_leaf else []
 
 
-def _panel_entry(arrangement: Arrangement, cell: Cell) -> list[Entry]:
+def _panel_entry(arrangement: Arrangement, point: MeasuredPoint) -> list[Entry]:
     if arrangement.panel_leaf is None:
         return []
-    value = cell.point.parameters.get(arrangement.panel_leaf)
+    value = point.parameters.get(arrangement.panel_leaf)
     return [Entry(leaf_text(value), numeric=False, mark="keep", sort=plain(value))]
 
 
@@ -267,11 +267,11 @@ def _mark(entry: Ranked | None) -> str:
 
 
 def _points_table(arrangement: Arrangement, name: str, note: str, metrics: Sequence[str]) -> Table | None:
-    cells = arrangement.cells
-    shown = [metric for metric in metrics if any(cell.summary(metric) for cell in cells)]
+    points = arrangement.points
+    shown = [metric for metric in metrics if any(point.summary(metric) for point in points)]
     if not shown:
         return None
-    units = {metric: scale([cell.median(metric) for cell in cells], metric_unit(metric)) for metric in shown}
+    units = {metric: scale([point.median(metric) for point in points], metric_unit(metric)) for metric in shown}
     several, x = len(arrangement.series) > 1, arrangement.x
     columns = [Column("Series", numeric=False)] if several or x is None else []
     columns += _panel_column(arrangement)
@@ -279,11 +279,11 @@ def _points_table(arrangement: Arrangement, name: str, note: str, metrics: Seque
     columns += [Column(_heading(metric), units[metric].symbol) for metric in shown]
     rows = []
     for series in arrangement.series:
-        for cell, value in zip(series.cells, series.x, strict=True):
+        for point, value in zip(series.points, series.x, strict=True):
             row = [words(series.label, series.style)] if several or x is None else []
-            row += _panel_entry(arrangement, cell)
+            row += _panel_entry(arrangement, point)
             row += [_x_entry(value, arrangement.numeric)] if x else []
-            row += [measured(cell, metric, units[metric]) for metric in shown]
+            row += [measured(point, metric, units[metric]) for metric in shown]
             rows.append(tuple(row))
     left = len(rows) - _MOST_ROWS
     if left > 0:
@@ -300,8 +300,8 @@ def _x_entry(value: object, numeric: bool) -> Entry:
     return Entry(leaf_text(value), numeric=numeric, sort=plain(value))
 
 
-def _elapsed(cell: Cell) -> Entry:
-    ratio = elapsed_ratio(cell)
+def _elapsed(point: MeasuredPoint) -> Entry:
+    ratio = elapsed_ratio(point)
     if math.isnan(ratio):
         return Entry("–")
     return Entry(f"{ratio:.2f}", flag="busy" if ratio > SLOW_ELAPSED else "", sort=plain(ratio))
@@ -311,9 +311,9 @@ def _medians(arrangement: Arrangement) -> str:
     """What the numbers are, and what their intervals really cover."""
     summaries = [
         summary
-        for cell in arrangement.cells
+        for point in arrangement.points
         for metric in (*arrangement.metrics, "run_seconds")
-        if (summary := cell.summary(metric)) is not None
+        if (summary := point.summary(metric)) is not None
     ]
     known = sorted(summary.coverage for summary in summaries if summary.coverage is not None)
     if known:

@@ -15,7 +15,7 @@ from typing import Any
 from harness.measure.noise import told_apart
 from harness.measure.statistics import Exponent, Summary, fit_exponent
 from harness.report.ranking import times_worse
-from harness.report.series import Arrangement, Cell
+from harness.report.series import Arrangement, MeasuredPoint
 from harness.report.words import setting
 from harness.store.records import ExperimentRecord
 from harness.vocabulary import KNOBS, METHOD_LEAVES, MethodName
@@ -33,7 +33,7 @@ FEWEST_SETTINGS = 3
 class Setting:
     """A method at one setting of its knob."""
 
-    cell: Cell
+    point: MeasuredPoint
     knob: float
     cost: Summary
     error: float
@@ -43,7 +43,7 @@ class Setting:
     def wrong(self) -> float:
         """The larger of the shares of missed and of extra hits; 0 where hits are not matched."""
         return max(
-            (share for name in ("missed_hits", "extra_hits") if (share := self.cell.median(name)) > 0), default=0
+            (share for name in ("missed_hits", "extra_hits") if (share := self.point.median(name)) > 0), default=0
         )
 
     @property
@@ -126,7 +126,7 @@ class Tradeoff:
         """The same, each with how many times it costs what the first costs."""
         ranked = self.ranked(target)
         return [
-            (curve, found, None if place == 0 else times_worse(found.cell, ranked[0][1].cell, COST))
+            (curve, found, None if place == 0 else times_worse(found.point, ranked[0][1].point, COST))
             for place, (curve, found) in enumerate(ranked)
         ]
 
@@ -145,15 +145,17 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
     """The trade-offs of an experiment that declares a reference, one a scene; none of any other."""
     if not (record.specification.get("measure") or {}).get("reference"):
         return []
-    scenes: dict[str, list[Cell]] = {}
-    for cell in arrangement.cells:
-        scenes.setdefault(_key(cell, lambda leaf: leaf not in METHOD_LEAVES and leaf not in _FOLLOWS), []).append(cell)
-    leaves = _differing([cells[0] for cells in scenes.values()], lambda leaf: leaf not in METHOD_LEAVES)
+    scenes: dict[str, list[MeasuredPoint]] = {}
+    for point in arrangement.points:
+        scenes.setdefault(_key(point, lambda leaf: leaf not in METHOD_LEAVES and leaf not in _FOLLOWS), []).append(
+            point
+        )
+    leaves = _differing([points[0] for points in scenes.values()], lambda leaf: leaf not in METHOD_LEAVES)
     found = []
-    for cells in scenes.values():
-        curves = _curves(cells)
+    for points in scenes.values():
+        curves = _curves(points)
         if curves:
-            place = ", ".join(setting(leaf, cells[0].point.parameters.get(leaf)) for leaf in leaves)
+            place = ", ".join(setting(leaf, points[0].parameters.get(leaf)) for leaf in leaves)
             found.append(Tradeoff(record, place, curves, arrangement.floor(COST)))
     return found
 
@@ -162,16 +164,16 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
 _FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
 
 
-def _curves(cells: Sequence[Cell]) -> tuple[Curve, ...]:
-    grouped: dict[str, list[Cell]] = {}
-    for cell in cells:
-        grouped.setdefault(_key(cell, _is_of_curve), []).append(cell)
+def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
+    grouped: dict[str, list[MeasuredPoint]] = {}
+    for point in points:
+        grouped.setdefault(_key(point, _is_of_curve), []).append(point)
     leaves = _differing([members[0] for members in grouped.values()], _is_of_curve)
     made: list[Curve] = []
     for members in grouped.values():
-        first = members[0].point.parameters
+        first = members[0].parameters
         method = MethodName.of(first)
-        settings = [found for cell in members if (found := _setting(cell, method.knob or "tolerance")) is not None]
+        settings = [found for point in members if (found := _setting(point, method.knob or "tolerance")) is not None]
         label = "\u00a0· ".join(setting(leaf, first.get(leaf)) for leaf in leaves) or method.algorithm
         if settings:
             ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
@@ -184,22 +186,22 @@ def _is_of_curve(leaf: str) -> bool:
     return leaf in METHOD_LEAVES and leaf not in KNOBS
 
 
-def _setting(cell: Cell, knob: str) -> Setting | None:
-    cost, error = cell.summary(COST), cell.median(ERROR)
+def _setting(point: MeasuredPoint, knob: str) -> Setting | None:
+    cost, error = point.summary(COST), point.median(ERROR)
     if cost is None or not math.isfinite(error) or not cost.median > 0:
         return None
-    trust = cell.median("reference_error")
-    return Setting(cell, float(cell.point.parameters[knob]), cost, error, trust if math.isfinite(trust) else 0.0)
+    trust = point.median("reference_error")
+    return Setting(point, float(point.parameters[knob]), cost, error, trust if math.isfinite(trust) else 0.0)
 
 
-def _differing(cells: Sequence[Cell], wanted: Any) -> list[str]:
-    leaves = [leaf for leaf in cells[0].point.parameters if wanted(leaf) and leaf not in _FOLLOWS] if cells else []
-    return [leaf for leaf in leaves if len({_text(cell, leaf) for cell in cells}) > 1]
+def _differing(points: Sequence[MeasuredPoint], wanted: Any) -> list[str]:
+    leaves = [leaf for leaf in points[0].parameters if wanted(leaf) and leaf not in _FOLLOWS] if points else []
+    return [leaf for leaf in leaves if len({_text(point, leaf) for point in points}) > 1]
 
 
-def _key(cell: Cell, wanted: Any) -> str:
-    return json.dumps({leaf: value for leaf, value in cell.point.parameters.items() if wanted(leaf)}, sort_keys=True)
+def _key(point: MeasuredPoint, wanted: Any) -> str:
+    return json.dumps({leaf: value for leaf, value in point.parameters.items() if wanted(leaf)}, sort_keys=True)
 
 
-def _text(cell: Cell, leaf: str) -> str:
-    return json.dumps(cell.point.parameters.get(leaf), sort_keys=True)
+def _text(point: MeasuredPoint, leaf: str) -> str:
+    return json.dumps(point.parameters.get(leaf), sort_keys=True)

@@ -34,11 +34,11 @@ def test_every_point_is_in_one_series(database):
     for name in ("homework/algorithms", "backends", "single", "broken"):
         found = arranged(database, name)
         record = next(record for record in experiments(database) if record.name == name)
-        assert sorted(cell.point.key for cell in found.cells) == sorted(point.key for point in record.points)
+        assert sorted(point.row.key for point in found.points) == sorted(point.key for point in record.points)
 
 
 def test_a_failed_run_counts_in_no_median(database):
     found = arranged(database, "homework/algorithms")
-    cell = next(series for series in found.series if series.label == "brute-force").at(1000)
-    assert len(cell.runs) == 5
-    assert cell.summary("pair_seconds") is None
+    point = next(series for series in found.series if series.label == "brute-force").at(1000)
+    assert len(point.runs) == 5
+    assert point.summary("pair_seconds") is None
