@@ -48,6 +48,6 @@ def _costs(series: Series, metric: str) -> dict[float, dict[tuple[int, str], flo
     pairs: Sequence[tuple[float, dict[tuple[int, str], float]]] = [
         (float(x), {place: value for place, value in point.by_place(metric).items() if value > 0})
         for point, x in zip(series.points, series.x, strict=True)
-        if not point.disagrees
+        if not point.is_wrong
     ]
     return {x: costs for x, costs in pairs if costs and math.isfinite(x)}

@@ -19,6 +19,7 @@ from harness.report.series import Arrangement, MeasuredPoint, Series
 from harness.report.tables import SLOW_ELAPSED, elapsed_ratio
 from harness.report.words import SCENE_LEAVES, is_clock, metric_title, metric_unit, more_is_better, scene_text, setting
 from harness.store.records import ExperimentRecord, VerdictRow
+from harness.vocabulary import MethodName
 
 _MOST_EXPONENTS = 8
 _WIDEST = 2.0
@@ -265,6 +266,15 @@ def _warnings(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup
             Markup(
                 "<strong>{} hits that the reference does not, or misses some</strong>: struck through, never ranked."
             ).format(f"{plural(len(disagreeing), 'point')} {'reports' if len(disagreeing) == 1 else 'report'}")
+        )
+    proven = dict.fromkeys(
+        MethodName.of(point.parameters).pipeline for point in arrangement.points if point.proven_wrong
+    )
+    if proven:
+        found.append(
+            Markup(
+                "<strong>{} proven wrong</strong> at poses of this experiment, or failed at them: never ranked."
+            ).format(f"{' and '.join(proven)} {'was' if len(proven) == 1 else 'were'}")
         )
     escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
     if escaped:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import PurePosixPath
@@ -41,6 +41,7 @@ from harness.report.tables import (
 )
 from harness.report.words import metric_title, setting
 from harness.store.records import ControlRecord, ExperimentRecord
+from harness.vocabulary import MethodName
 
 # Exponents are told for what the experiment asks for and for these counts, which have no noise.
 _COUNTS = ("pair_tests", "box_tests", "narrow_tests", "predictions", "events")
@@ -51,18 +52,29 @@ _MOST_SLOPES = 24
 
 @dataclass(frozen=True, eq=False)
 class ExperimentPage:
-    """All that an experiment's page says. `folder` is where it lies below the report."""
+    """All that an experiment's page says.
+
+    Parameters
+    ----------
+    record : of the experiment
+    runs : rows of the run table that belong to it
+    folder : where the page lies below the report
+    controls : of its points
+    met : conditions of its runs
+    wrong : methods that were proven wrong at its poses
+    """
 
     record: ExperimentRecord
     runs: pd.DataFrame
     folder: PurePosixPath
     controls: Sequence[ControlRecord] = ()
     met: Sequence[Mapping[str, float]] = ()
+    wrong: Collection[MethodName] = ()
 
     @cached_property
     def arrangement(self) -> Arrangement:
         """Its points as series."""
-        return arrange(self.record, self.runs, self.controls)
+        return arrange(self.record, self.runs, self.controls, self.wrong)
 
     @cached_property
     def growths(self) -> list[Growth]:

@@ -41,12 +41,12 @@ class Growth:
 def rank(series: Sequence[Series], x: object, metric: str, floor: float) -> list[Ranked]:
     """The series that have the metric at x (None: anywhere), best first; `floor` is the noise floor of the metric.
 
-    Left out: runs that disagree with the reference, because a faster answer that is wrong is not faster.
+    Left out: what is known to be wrong, because a faster answer that is wrong is not faster.
     """
     found = []
     for line in series:
         point = line.points[0] if x is None else line.at(x)
-        if point is not None and math.isfinite(point.median(metric)) and not point.disagrees:
+        if point is not None and math.isfinite(point.median(metric)) and not point.is_wrong:
             found.append((line, point, point.median(metric)))
     found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])
     if not found:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,7 +21,7 @@ from harness.measure.noise import noise_floor
 from harness.measure.statistics import Summary, summary
 from harness.report.words import setting
 from harness.store.records import ControlRecord, ExperimentRecord, PointRow
-from harness.vocabulary import METHOD_LEAVES
+from harness.vocabulary import METHOD_LEAVES, MethodName
 
 MOST_IN_A_PANEL = 6
 DEFAULT_METRICS = ("pair_seconds", "box_seconds")
@@ -29,10 +29,18 @@ DEFAULT_METRICS = ("pair_seconds", "box_seconds")
 
 @dataclass(frozen=True, eq=False)
 class MeasuredPoint:
-    """One point of an experiment with all its runs, failed ones included; `runs` has a row a run, by repeat."""
+    """One point of an experiment with all its runs, failed ones included.
+
+    Parameters
+    ----------
+    row : as it is stored
+    runs : a row a run, by repeat
+    proven_wrong : whether its method was proven wrong at poses of this experiment, or failed at them
+    """
 
     row: PointRow
     runs: pd.DataFrame
+    proven_wrong: bool = False
 
     @property
     def parameters(self) -> Mapping[str, Any]:
@@ -82,8 +90,13 @@ class MeasuredPoint:
 
     @property
     def disagrees(self) -> bool:
-        """Whether a run's hits differ from the reference's: such a point is shown, and never ranked."""
+        """Whether a run's hits differ from the reference's."""
         return any(bool((self.values(metric) > 0).any()) for metric in ("missed_hits", "extra_hits"))
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether its answers are known to be wrong: such a point is shown struck through, and never ranked."""
+        return self.proven_wrong or self.disagrees
 
     @cached_property
     def _values(self) -> dict[str, npt.NDArray[np.float64]]:
@@ -161,11 +174,27 @@ class Arrangement:
         return [point for series in self.series for point in series.points]
 
 
-def arrange(record: ExperimentRecord, runs: pd.DataFrame, controls: Sequence[ControlRecord] = ()) -> Arrangement:
-    """Arrange an experiment's points, its runs (rows of the run table that belong to it), and their controls."""
+def arrange(
+    record: ExperimentRecord,
+    runs: pd.DataFrame,
+    controls: Sequence[ControlRecord] = (),
+    wrong: Collection[MethodName] = (),
+) -> Arrangement:
+    """Arrange an experiment's points.
+
+    Parameters
+    ----------
+    record : of the experiment
+    runs : rows of the run table that belong to it
+    controls : of its points
+    wrong : methods that were proven wrong at its poses
+    """
     by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
     nothing = runs.iloc[:0]
-    points = [MeasuredPoint(row, by_point.get(row.key, nothing)) for row in record.points]
+    points = [
+        MeasuredPoint(row, by_point.get(row.key, nothing), bool(wrong) and MethodName.of(row.parameters) in wrong)
+        for row in record.points
+    ]
     report: Mapping[str, Any] = record.specification.get("report") or {}
     swept = [leaf for leaf in record.specification.get("swept") or () if _spread(points, leaf) > 1]
     x = _x_leaf(points, swept, report.get("x"))

@@ -20,7 +20,7 @@ from harness.report import palette
 from harness.report.accuracy import AccuracySection, sections
 from harness.report.backends import BackendsPage
 from harness.report.comparison import Comparison
-from harness.report.correctness import newest
+from harness.report.correctness import correctness, newest
 from harness.report.overview import Overview
 from harness.report.pages import (
     ExperimentPage,
@@ -86,7 +86,7 @@ def write_report(database: str | Path, out: str | Path) -> Path:
 
 def render(database: str | Path) -> Iterator[tuple[str, str]]:
     """Every file of the report: (path below the report, text)."""
-    table, records = runs(database), experiments(database)
+    table, records, compared_methods = runs(database), experiments(database), newest(comparisons(database))
     taken: set[str] = set()
     pages = [
         ExperimentPage(
@@ -95,6 +95,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
             folder_of(record.name, taken),
             controls(database, [record.name]),
             conditions(database, record.name),
+            correctness([found for found in compared_methods if found.experiment == record.name]).wrong,
         )
         for record in records
     ]
@@ -104,7 +105,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     claims = any(page.record.claims for page in pages if not is_case(page))
     compared = newest_comparison(database)
     accuracy, stability = sections(pages), matrix(pages)
-    backends = BackendsPage(newest(comparisons(database)), table)
+    backends = BackendsPage(compared_methods, table)
     present = (
         (ACCURACY, bool(accuracy)),
         (BACKENDS, bool(backends.records)),

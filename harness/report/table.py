@@ -87,7 +87,7 @@ def measured(point: MeasuredPoint | None, metric: str, unit: Scale, mark: str = 
     small = f"±{unit.margin(found.median, half)}" if half > 0 else ""
     if found.outliers and half > 0:
         small += "°"
-    struck = point is not None and point.disagrees
+    struck = point is not None and point.is_wrong
     return Entry(unit.text(found.median), small, mark=mark, struck=struck, flag=flag, sort=plain(found.median))
 
 

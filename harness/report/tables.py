@@ -243,9 +243,14 @@ def _comparison(arrangement: Arrangement, metric: str) -> Table:
     note = f"{metric}{units}, {_medians(arrangement)}."
     if ranked:
         note += " Bold: best, or not to be told from it. Tint: times worse than the best."
-    if any(point.disagrees for point in arrangement.points):
-        note += " Struck through: disagrees with the reference, and is not ranked."
+    if any(point.is_wrong for point in arrangement.points):
+        note += f" Struck through: {_why_struck(arrangement)}, and is not ranked."
     return Table(_heading(metric), note, tuple(columns), tuple(rows))
+
+
+def _why_struck(arrangement: Arrangement) -> str:
+    ways = (("disagrees with the reference", "disagrees"), ("was proven wrong by comparison", "proven_wrong"))
+    return " or ".join(text for text, how in ways if any(getattr(point, how) for point in arrangement.points))
 
 
 def _panel_column(arrangement: Arrangement) -> list[Column]:

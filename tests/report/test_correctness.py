@@ -9,6 +9,7 @@ from harness.store.records import ComparisonRecord, PointRow
 from harness.vocabulary import MethodName
 
 SPEEDS = {("fcl", "brute-force"): 4e-3, ("fcl", "grid"): 1e-3, ("fcl", "tree"): 2e-3, ("pybullet", "native"): 3e-3}
+SPEED = "pair_seconds_per_frame"
 LEAVES = {"shape": "hull", "count": 50, "packing": 0.1}
 
 
@@ -21,21 +22,28 @@ def document(backends, wrong=()):
     return {"pairs": [pair], "cases": cases, **empty}
 
 
-def speed_rows(path, *documents):
-    """The rows of the table of speeds, where an experiment timed four methods and these comparisons were made."""
+def pages(path, *documents):
+    """The report, where an experiment timed four methods and these comparisons were made."""
     points = [
         PointRow(f"{backend}/{algorithm}", LEAVES | {"backend": backend, "algorithm": algorithm})
         for backend, algorithm in SPEEDS
     ]
     with Database.open(path) as database:
         sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"processor": "one"}, {})
-        database.list_experiment(sweep, "peers", "Peers", None, "", {"swept": ["backend", "algorithm"]}, points)
+        database.list_experiment(
+            sweep, "peers", "Peers", None, "", {"swept": ["backend", "algorithm"], "report": {"y": [SPEED]}}, points
+        )
         for point, seconds in zip(points, SPEEDS.values(), strict=True):
-            metrics = {"pair_seconds_per_frame": (seconds, "s")}
+            metrics = {SPEED: (seconds, "s")}
             database.add_run(sweep, point.key, 0, "ok", None, None, metrics, True)
         for made in documents:
             database.add_comparison("harness compare", "peers", tuple(made["pairs"][0]["backends"]), "key", made)
-    page = dict(render(path))["backends.html"]
+    return dict(render(path))
+
+
+def speed_rows(path, *documents):
+    """The rows of the table of speeds on the page of backends."""
+    page = pages(path, *documents)["backends.html"]
     table = page[page.index('id="speed"') : page.index('id="reading"')]
     return {row.split("<")[0]: row for row in re.findall(r'<tr><th scope="row">(.*?)</tr>', table, re.DOTALL)}
 
@@ -58,6 +66,16 @@ def test_a_grid_that_is_wrong_is_struck_through_and_takes_no_other_method_with_i
     assert "never wrong in 8\u202f372\u00a0verdicts" in rows["pybullet, native"]
     assert "not compared" in rows["fcl, brute-force"]
     assert [name for name, row in rows.items() if "best" in row] == ["fcl, tree"]
+
+
+def test_a_method_that_is_wrong_has_no_rank_on_the_page_of_its_experiment_either(tmp_path):
+    found = pages(tmp_path / "x.db", document(["fcl/grid", "pybullet"], wrong=["fcl/grid"]))
+    page = found["pages/peers/index.html"]
+    findings, warnings = page.split('<div class="box warning">')[:2]
+    assert "<strong>tree</strong> has the lowest" in findings
+    assert "<strong>fcl/grid was proven wrong</strong> at poses of this experiment" in warnings
+    assert re.search(r'grid</th>.*<s class="struck">1</s>', page)
+    assert "Struck through: was proven wrong by comparison, and is not ranked." in page
 
 
 def test_an_error_that_two_methods_share_counts_for_both():
