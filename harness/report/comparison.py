@@ -21,11 +21,8 @@ from harness.store.tables import sweeps
 CLOCK = "run_seconds"
 # Relative. Times of the same work drift by so much from one hour to the next, which no control within a sweep can see.
 DRIFT = 0.1
-# Exact numbers: another value is another answer. Errors near rounding are left out, for a compiler may change them.
-EXACT = (
-    *(name for name, metric in METRICS.items() if metric.kind == "counter"),
-    "escaped", "missed_hits", "extra_hits",
-)  # fmt: skip
+# Another value is another answer. Errors near rounding are none of them, for a compiler may change those.
+EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)
 
 _RECENT = 10  # sweeps among which two are looked for, where none are named
 

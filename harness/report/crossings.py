@@ -11,14 +11,14 @@ from markupsafe import Markup
 from harness.measure.crossover import Crossover, crossover
 from harness.report.quantity import number
 from harness.report.series import Arrangement, Series
-from harness.report.words import is_clock, metric_title, more_is_better
+from harness.report.words import is_noisy, metric_title, more_is_better
 
 _MOST = 12
 
 
 def crossing_sentences(arrangement: Arrangement) -> list[Markup]:
     """A sentence for each pair of series of a panel, on the first clock; nothing where x is no number."""
-    clocks = [metric for metric in arrangement.metrics if is_clock(metric) and not more_is_better(metric)]
+    clocks = [metric for metric in arrangement.metrics if is_noisy(metric) and not more_is_better(metric)]
     if not arrangement.numeric or arrangement.x is None or not clocks:
         return []
     found = []

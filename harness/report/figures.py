@@ -17,7 +17,7 @@ from harness.report.drawing import Form, Line, Panel, Slope, draw_exponents, dra
 from harness.report.published import Row, metrics_of
 from harness.report.quantity import Scale, leaf_text, number, scale
 from harness.report.series import Arrangement, Series
-from harness.report.words import is_clock, leaf_title, metric_title, metric_unit
+from harness.report.words import is_noisy, leaf_title, metric_title, metric_unit
 
 # Below these ranges a logarithmic axis has no two round numbers on it.
 _LOG_X, _LOG_Y = 4.0, 2.5
@@ -218,7 +218,7 @@ def _axis_title(metric: str, unit: Scale) -> str:
 def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool) -> str:
     said = []
     shape = "band" if arrangement.numeric else "bar"
-    if any(map(is_clock, metrics)):
+    if any(map(is_noisy, metrics)):
         found = [point.summary(metric) for point in arrangement.points for metric in metrics]
         counts = [summary.n for summary in found if summary]
         if max(counts) == 1:

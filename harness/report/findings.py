@@ -17,7 +17,7 @@ from harness.report.quantity import exponent_text, number, plural, quantity
 from harness.report.ranking import Growth, Ranked, rank, times_worse
 from harness.report.series import Arrangement, MeasuredPoint, Series
 from harness.report.tables import SLOW_ELAPSED, elapsed_ratio
-from harness.report.words import SCENE_LEAVES, is_clock, metric_title, metric_unit, more_is_better, scene_text, setting
+from harness.report.words import SCENE_LEAVES, is_noisy, metric_title, metric_unit, more_is_better, scene_text, setting
 from harness.store.records import ExperimentRecord, VerdictRow
 from harness.vocabulary import MethodName
 
@@ -73,7 +73,7 @@ def stability(arrangement: Arrangement) -> str:
         summary.stable
         for point in arrangement.points
         for metric in arrangement.metrics
-        if is_clock(metric) and (summary := point.summary(metric)) is not None and summary.stable is not None
+        if is_noisy(metric) and (summary := point.summary(metric)) is not None and summary.stable is not None
     ]
     if not judged:
         return ""
@@ -88,7 +88,7 @@ def _fastest(arrangement: Arrangement) -> list[Markup]:
     many = len(arrangement.panels) > 2
     # the far end first: that is where methods part
     ends = xs[:4] if not arrangement.numeric else (xs[-1:] if many or len(xs) == 1 else (xs[-1], xs[0]))
-    metrics = [metric for metric in arrangement.metrics if is_clock(metric)][: 1 if many else 2]
+    metrics = [metric for metric in arrangement.metrics if is_noisy(metric)][: 1 if many else 2]
     for metric in metrics:
         for panel in arrangement.panels:
             lines = [series for series in methods if series.panel == panel]
@@ -160,7 +160,7 @@ def _change(arrangement: Arrangement) -> list[Markup]:
             quantity(last.median(metric), metric_unit(metric)),
         )
         how = _times(ratio)
-        apart = told_apart(ratio, arrangement.floor(metric) if is_clock(metric) else 0.0)
+        apart = told_apart(ratio, arrangement.floor(metric) if is_noisy(metric) else 0.0)
         told = Markup("") if apart else Markup(", not to be told from no change")
         found.append(text + Markup(": {}{}.").format(how, told))
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from harness.measure.metrics import METRICS
 from harness.measure.statistics import CONFIDENCE, ENOUGH_RANGE
 from harness.report.published import Recovered, Row, metrics_of
 from harness.report.quantity import exponent_text, leaf_text, number, plural, scale
@@ -17,14 +18,10 @@ from harness.report.words import is_ranked, leaf_title, metric_title, metric_uni
 _TESTS = (
     "frames", "frames_per_second", "pair_tests", "pair_seconds_per_frame", "box_tests", "box_seconds_per_frame",
 )  # fmt: skip
-_CLOCKS = (
-    "pair_seconds", "box_seconds", "response_seconds", "run_seconds", "run_seconds_elapsed", "setup_seconds",
-    "simulated_per_second",
-)  # fmt: skip
-_OTHERS = (
-    "narrow_tests", "predictions", "events", "pair_hits", "pair_contacts", "box_hits", "missed_hits", "extra_hits",
-    "time_error", "position_error", "energy_drift", "momentum_drift", "max_penetration", "escaped", "peak_memory",
-)  # fmt: skip
+_CLOCKS = tuple(name for name, metric in METRICS.items() if metric.clock and metric.tabulated)
+_OTHERS = tuple(
+    name for name, metric in METRICS.items() if metric.tabulated and not metric.clock and name not in _TESTS
+)
 _MOST_ROWS = 100
 SLOW_ELAPSED = 1.2
 # times worse than the best, from which each tint begins

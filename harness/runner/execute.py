@@ -5,7 +5,7 @@ from __future__ import annotations
 import resource
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite
 from typing import Any
@@ -15,6 +15,7 @@ from harness.backends.protocol import approximations, assemble
 from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
+from harness.measure.metrics import from_outcome
 from harness.motion.hits import Outcome, Trace
 from harness.motion.invariance import invariance
 from harness.motion.plan import Plan, make_plan
@@ -84,6 +85,7 @@ def execute(
     metrics |= invariance(asked, scene, partial(_hits, point, plan=plan))
     if point.reference is not None and not traced:
         metrics |= accuracy.errors(point, mesh, outcome.trace or _hits(point, scene), _hits)
+    metrics |= from_outcome(scene, replace(outcome, metrics=metrics))
     _refuse_what_is_no_number(metrics)
     return Result(metrics, plan, outcome.trace if traced else None, flights)
 
