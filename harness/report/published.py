@@ -16,8 +16,9 @@ from itertools import combinations
 from typing import Any
 
 from harness.measure.metrics import METRICS
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import leaf_text
-from harness.report.series import Arrangement, MeasuredPoint
+from harness.report.series import Arrangement
 from harness.report.words import setting
 
 _EXACT = 0.005  # a recovered number of bodies further than this from a whole one is none

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from harness.measure.noise import told_apart
 from harness.measure.statistics import Exponent, Summary, fit_exponent, paired_ratio
-from harness.report.series import Arrangement, MeasuredPoint, Series
+from harness.report.point import MeasuredPoint
+from harness.report.series import Arrangement, Series
 from harness.report.words import more_is_better
 
 

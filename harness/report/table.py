@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import MISSING, Scale, number
-from harness.report.series import MeasuredPoint
 
 _PLAIN = re.compile(r"−?[\d\u202f]+(\.\d+)?×?")
 

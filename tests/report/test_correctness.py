@@ -2,7 +2,7 @@
 
 import re
 
-from harness.report.correctness import correctness, newest
+from harness.report.backends.correctness import correctness, newest
 from harness.report.site import render
 from harness.store.database import Database
 from harness.store.records import ComparisonRecord, PointRow

@@ -3,8 +3,9 @@
 import pandas as pd
 import pytest
 
-from harness.report.crossings import crossing_sentences
-from harness.report.series import Arrangement, MeasuredPoint, Series
+from harness.report.point import MeasuredPoint
+from harness.report.sentences.crossings import crossing_sentences
+from harness.report.series import Arrangement, Series
 from harness.store.records import PointRow
 
 

@@ -3,7 +3,8 @@
 import pandas as pd
 
 from harness.report.plan import stages
-from harness.report.series import Arrangement, MeasuredPoint, Series
+from harness.report.point import MeasuredPoint
+from harness.report.series import Arrangement, Series
 from harness.store.records import PointRow
 
 

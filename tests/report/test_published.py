@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.report.contradictions import contradictions
+from harness.report.arrange import arrange
 from harness.report.published import Row, distinct, published_rows, recovered, repetitions
-from harness.report.series import arrange
+from harness.report.sentences.contradictions import contradictions
 from harness.store.tables import experiments, runs
 
 
