@@ -10,7 +10,7 @@ import pytest
 from harness.vocabulary import ALGORITHMS
 
 PACKAGE = Path(__file__).parents[1] / "harness"
-BASE = {"arrays", "errors", "kernel", "vocabulary"}
+BASE = {"arrays", "errors", "kernel", "modules", "vocabulary"}
 KERNELS = {"scene", "narrowphase", "broadphase"}
 FLIGHT = KERNELS | {"backends", "measure", "motion", "methods"}
 KNOWS = {

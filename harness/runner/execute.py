@@ -5,12 +5,13 @@ from __future__ import annotations
 import resource
 import sys
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite
 
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
+from harness.measure.metrics import from_outcome
 from harness.methods.method import Method
 from harness.methods.stages import Plan
 from harness.motion.finite import NotFiniteError
@@ -82,6 +83,7 @@ def execute(
     metrics |= invariance(asked, scene, partial(_hits_as_planned, method, plan, law))
     if point.reference is not None and not traced:
         metrics |= accuracy.errors(point, mesh, outcome.trace or hits(point, scene), hits)
+    metrics |= from_outcome(scene, replace(outcome, metrics=metrics))
     _require_finite_metrics(metrics)
     return Result(metrics, plan, outcome.trace if traced else None, flights)
 

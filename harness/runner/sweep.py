@@ -209,7 +209,7 @@ def _keep(database: Database, sweep: int, done: Done) -> None:
     """Put a run, or a control, into the database."""
     job, report = done.job, done.report
     if job.control:
-        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].kind == "clock"}
+        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].clock}
         database.add_control(sweep, job.key, job.repeat, report.status, clocks, done.machine)
         return
     database.add_run(
