@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[1] / "harness"
-BASE = {"arrays", "errors", "kernel", "vocabulary"}
+BASE = {"arrays", "child_process", "errors", "kernel", "process_limits", "vocabulary"}
 GEOMETRY = {"scene", "narrowphase", "broadphase", "backends"}
 KNOWS = {
     "experiment": set(),
