@@ -130,6 +130,12 @@ class MethodName(NamedTuple):
         return f"{self.backend}/{self.algorithm}" if self._word.own else self.backend
 
     @property
+    def short(self) -> str:
+        """The shortest name that `read` understands: "fcl" for every pair put to FCL, else as `pipeline`."""
+        alone = MethodName.read(self.backend, self.shape, self.query)
+        return self.backend if alone == self else self.pipeline
+
+    @property
     def stepped(self) -> bool:
         """Whether it looks at frames; else it computes events."""
         return self._word.stepped

@@ -10,7 +10,7 @@ import pytest
 from harness.vocabulary import ALGORITHMS
 
 PACKAGE = Path(__file__).parents[1] / "harness"
-BASE = {"arrays", "errors", "kernel", "modules", "vocabulary"}
+BASE = {"arrays", "child_process", "errors", "kernel", "modules", "process_limits", "vocabulary"}
 KERNELS = {"scene", "narrowphase", "broadphase"}
 FLIGHT = KERNELS | {"backends", "measure", "motion", "methods"}
 KNOWS = {

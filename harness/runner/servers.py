@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from types import TracebackType
 
+from harness.child_process import Ending, end
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
 from harness.runner.task import Report, Task
@@ -137,10 +138,7 @@ class _Server:
                 return Report("timeout", f"{importing} did not end within {timeout:g} s")
             self._channel.recv()
         except (EOFError, OSError):
-            self._process.wait()
-            code = self._process.returncode
-            how = f"signal {-code}" if code < 0 else f"exit code {code}"
-            return Report("crashed", f"{importing} ended its process with {how}")
+            return Report("crashed", f"{importing} ended its process with {Ending(self._process.wait())}")
         self._ready = True
         return None
 
@@ -164,10 +162,8 @@ class _Server:
     def close(self) -> None:
         """End the server and the run that it may have in flight."""
         self._channel.close()
-        if not self._ready:  # it has no run to end, and may hang
-            self._process.kill()
         try:
-            self._process.wait(timeout=5)
+            self._process.wait(timeout=5 if self._ready else 0)  # before it is ready it has no run to end, and may hang
         except subprocess.TimeoutExpired:
-            self._process.kill()
+            end(self._process.pid)
             self._process.wait()

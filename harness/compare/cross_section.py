@@ -15,7 +15,7 @@ Segment = list[float]
 _CORNERS = 64  # of the polygon that stands for a sphere
 
 
-def section(case: Case) -> list[list[Segment]]:
+def cross_section(case: Case) -> list[list[Segment]]:
     """What a plane cuts out of both bodies of a case, each as segments in the plane.
 
     The first axis of the plane points from the first body to the second, whose centres lie on it at -d/2 and d/2.

@@ -1,4 +1,4 @@
-"""What two free flights of the same scene have in common: all hits up to the first that differs, then only averages."""
+"""What two free runs of the same scene have in common: all hits up to the first that differs, then only averages."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from harness.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class Afterwards:
-    """One backend's flight, from the divergence to its end, or all of it where there is none.
+class AfterDivergence:
+    """One backend's run, from the divergence to its end, or all of it where there is none.
 
     Parameters
     ----------
     pair_hits_per_second, box_hits_per_second : 1/s of simulated time
-    energy_change : of the translational energy, relative to the start of the flight
+    energy_change : of the translational energy, relative to the start of the run
     """
 
     backend: str
@@ -28,8 +28,8 @@ class Afterwards:
 
 
 @dataclass(frozen=True)
-class SideBySide:
-    """Two flights.
+class FreeRunPair:
+    """Two runs of one scene, each by the hits of its own backend.
 
     Parameters
     ----------
@@ -46,11 +46,11 @@ class SideBySide:
     duration: float
     diverged: float | None
     shared_hits: int
-    afterwards: tuple[Afterwards, Afterwards]
+    afterwards: tuple[AfterDivergence, AfterDivergence]
 
 
-def side_by_side(names: tuple[str, str], scene: Scene, response: str, traces: tuple[Trace, Trace]) -> SideBySide:
-    """Hold two flights of a scene against each other."""
+def compare_runs(names: tuple[str, str], scene: Scene, response: str, traces: tuple[Trace, Trace]) -> FreeRunPair:
+    """Hold two runs of a scene against each other, in the order of the names."""
     events = [_events(trace) for trace in traces]
     shortest = min(map(len, events))
     differing = (events[0][:shortest] != events[1][:shortest]).any(axis=1)
@@ -63,7 +63,7 @@ def side_by_side(names: tuple[str, str], scene: Scene, response: str, traces: tu
         _afterwards(name, trace, shared if diverged is not None else 0, diverged or 0.0, start)
         for name, trace in zip(names, traces, strict=True)
     )
-    return SideBySide(
+    return FreeRunPair(
         names, scene.shape, len(scene.bodies), response, duration, diverged, shared, (first, second)
     )  # fmt: skip
 
@@ -73,11 +73,11 @@ def _events(trace: Trace) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     return np.column_stack([trace.times, trace.bodies, trace.walls]).astype(np.float64).reshape(-1, 4)
 
 
-def _afterwards(name: str, trace: Trace, shared: int, since: float, start: float) -> Afterwards:
+def _afterwards(name: str, trace: Trace, shared: int, since: float, start: float) -> AfterDivergence:
     seconds = trace.time - since
     pairs = int(np.count_nonzero(trace.walls[shared:] < 0))
     walls = len(trace.walls) - shared - pairs
     change = (trace.energy - start) / start if start else 0.0
-    return Afterwards(
+    return AfterDivergence(
         name, pairs / seconds if seconds > 0 else 0.0, walls / seconds if seconds > 0 else 0.0, change
     )  # fmt: skip

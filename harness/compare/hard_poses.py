@@ -28,8 +28,8 @@ GAPS = (0.0, *(sign * 10.0**power for power in range(-15, -1) for sign in (1, -1
 """Of the size of the smaller body."""
 
 _FEATURES = ("vertex", "edge", "face")
-# sizes of the two bodies and how far from the origin they are, m
-_SETTINGS = (
+# The sizes of the two bodies and how far from the origin they are, m.
+_SIZES_AND_DISTANCES = (
     (1.0, 1.0, 0.0),
     (1.0, 1.0, 1e3),
     (1.0, 1.0, 1e6),
@@ -56,9 +56,9 @@ def hard_poses(shape: Shape, mesh: Mesh | None, every: int = 1) -> Iterator[Pose
     ----------
     shape : what the narrow phase is to see
     mesh : None for spheres
-    every : take only every so manieth of the first contacts
+    every : of the first contacts, take every n-th
     """
-    for size, other, away in _SETTINGS:
+    for size, other, away in _SIZES_AND_DISTANCES:
         yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away, every=every), hard=True)
 
 
