@@ -31,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--backends",
         metavar="A,B",
-        help="two or more, such as fcl,fcl/grid,pybullet: a method of this program as BACKEND/ALGORITHM, a backend alone "
-        "for its own pipeline; those of the experiment where it names several, else fcl,pybullet",
+        help="two or more, such as fcl,fcl/grid,pybullet: a method of this program as BACKEND/ALGORITHM, a backend "
+        "alone for its own pipeline; those of the experiment where it names several, else fcl,pybullet",
     )
     add_override_argument(parser)
     parser.add_argument(
