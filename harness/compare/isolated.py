@@ -7,18 +7,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from types import TracebackType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from harness.arrays import Pairs
 from harness.backends import registry
-from harness.backends.protocol import Backend, approximations, own_hulls, own_hulls_tolerance
+from harness.backends.protocol import approximations, own_hulls, own_hulls_tolerance
 from harness.child_process import Channel, Child
 from harness.compare.poses import Pose
 from harness.errors import InputError
 from harness.scene.hull import Hull
 from harness.scene.scene import Scene
+from harness.vocabulary import OWN_BACKEND
 
 ANSWER_SECONDS = 10.0
 """s for an answer, by which a backend that hangs is told from a slow one."""
@@ -28,7 +29,7 @@ _LOADING = 10
 
 @dataclass(frozen=True)
 class Facts:
-    """What a loaded backend says of itself for the shape of the scene.
+    """What a loaded backend declares of itself for the shape of the scene.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ class Facts:
 
 
 class UnusableError(Exception):
-    """The backend cannot take the scene at all; says why."""
+    """The backend cannot take the scene at all, and why."""
 
 
 class Isolated:
@@ -53,13 +54,13 @@ class Isolated:
 
     Parameters
     ----------
-    name : of what answers, which `_create` makes of it; nothing else looks into it
+    name : of what answers; what it stands for is told by `engine_of` alone
     scene : Scene
     timeout : s for an answer
 
     Attributes
     ----------
-    facts : what it says of itself, once entered
+    facts : what it declares of itself, once entered
 
     Raises
     ------
@@ -117,15 +118,26 @@ class Isolated:
             self._child = None
 
 
-def _create(name: str) -> Backend:
-    """What stands behind a name: the backend, as it is by default."""
-    return registry.create(name)
+class Engine(NamedTuple):
+    """How an experiment asks what is compared under a name."""
+
+    backend: str
+    algorithm: str
+
+
+def engine_of(name: str) -> Engine:
+    """What a name stands for: a backend with its own detection, and `fcl`, which has none, with every pair.
+
+    >>> engine_of("pybullet")
+    Engine(backend='pybullet', algorithm='native')
+    """
+    return Engine(name, "brute-force" if name == OWN_BACKEND else "native")
 
 
 def _serve(name: str, scene: Scene, channel: Channel) -> None:
-    """The process of the backend: load, say what it is, then answer until the other side closes."""
+    """The process of the backend: load, send the facts, then answer until the parent closes its end."""
     try:
-        backend = _create(name)
+        backend = registry.create(*engine_of(name))
         if scene.shape not in backend.shapes:
             raise InputError(f"it has no shape {scene.shape}")
         backend.load(scene)

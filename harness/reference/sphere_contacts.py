@@ -22,7 +22,7 @@ from harness.reference.folded_paths import FoldedPaths, fold_time, folded_paths,
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
-# Straight pieces of all pairs together up to which every pair is looked at over the whole duration (about a second).
+# Straight pieces of all pairs together up to which every pair is searched over the whole duration (about a second).
 FEW_PIECES = 5e6
 # Ends of two pieces of one encounter that are no further apart, in ulps of the duration, are one moment.
 SAME_MOMENT = 64.0
@@ -56,7 +56,7 @@ def sphere_contacts(
     duration : float
         s
     windows : int
-        Into how many parts the duration is cut; in each, only pairs near one another are looked at. Chosen where left
+        Into how many parts the duration is cut; in each, only pairs near one another are searched. Chosen where left
         out; the answer is the same.
     margin : float
         By how much of its radius each sphere is taken larger where it meets another, though not where it meets a wall.
