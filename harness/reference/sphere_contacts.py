@@ -197,6 +197,9 @@ def passage(gap: Floats, velocity: Floats, reach: float) -> tuple[float, float]:
     ----------
     gap, velocity : (3,) float arrays, m and m/s
     reach : m
+
+    >>> passage(np.array([3.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 1.0)
+    (2.0, 4.0)
     """
     b = gap[0] * velocity[0] + gap[1] * velocity[1] + gap[2] * velocity[2]
     vv = velocity[0] ** 2 + velocity[1] ** 2 + velocity[2] ** 2
