@@ -45,7 +45,7 @@ def open_for_reading(path: Path) -> sqlite3.Connection:
         raise InputError(f"{path}: no such file; `harness sweep` makes it")
     if not path.is_file():
         raise InputError(f"{path}: is no file; give a file with --db")
-    with told(path):
+    with as_input_error(path):
         connection = _connect_read_only(path)
         try:
             if not _is_results(connection, path):
@@ -68,13 +68,13 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
         The file is damaged, another program's, of another schema version, or cannot be written to.
     """
     if os.path.exists(path):
-        with told(path):
+        with as_input_error(path):
             reading = _connect_read_only(path)
             try:
                 _is_results(reading, path)
             finally:
                 reading.close()
-    with told(path):
+    with as_input_error(path):
         connection = _connect(path, "rwc")
         try:
             connection.execute("PRAGMA journal_mode = WAL")
@@ -93,7 +93,7 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
 
 
 @contextmanager
-def told(path: Path) -> Iterator[None]:
+def as_input_error(path: Path) -> Iterator[None]:
     """Turn what SQLite raises about a file into an InputError; errors of the program pass through."""
     try:
         yield

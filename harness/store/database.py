@@ -18,7 +18,7 @@ from types import TracebackType
 from typing import Any
 
 from harness.errors import InputError
-from harness.store.connection import open_for_writing, told
+from harness.store.connection import as_input_error, open_for_writing
 from harness.store.history import History
 from harness.store.lock import SweepLock
 from harness.store.recording import Recording, recorded, write
@@ -266,13 +266,13 @@ class Database:
 
     def recorded(self, keys: Iterable[str]) -> set[str]:
         """Those of the points, by their keys, that have a recording."""
-        with told(self.path):
+        with as_input_error(self.path):
             return recorded(self._connection, keys)
 
     @contextmanager
     def _transaction(self) -> Iterator[sqlite3.Connection]:
         connection = self._connection
-        with told(self.path):
+        with as_input_error(self.path):
             connection.execute("BEGIN IMMEDIATE")
             try:
                 yield connection

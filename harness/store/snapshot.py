@@ -8,7 +8,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.store.connection import told
+from harness.store.connection import as_input_error
 from harness.store.history import reading
 from harness.store.records import RunRecord, VerdictKind
 
@@ -55,7 +55,7 @@ def snapshot(path: str | Path, sweep: int) -> Snapshot:
     InputError
         The file is missing, empty, damaged, another program's, or of another schema version.
     """
-    with reading(path) as connection, told(Path(path)):
+    with reading(path) as connection, as_input_error(Path(path)):
         rows = connection.execute(
             "SELECT run.id, key, parameters, repeat, status, reason, sweep, timing_grade, fingerprint, "
             "(SELECT min(name) FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
