@@ -1,4 +1,4 @@
-"""What was measured already, by any connection: for a sweep that resumes, and for one that only asks."""
+"""What is measured already: for a sweep that resumes, and for one that only says what it would do."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class History:
 
     Parameters
     ----------
-    path : the results file, for what is said of it
-    connection : to it
+    path : the results file, named in errors
+    connection : open on it
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
@@ -53,8 +53,8 @@ class History:
             )
             return set(rows)
 
-    def without(self, metrics: Mapping[str, Collection[str]]) -> list[tuple[str, int]]:
-        """The keys and repeats whose newest run ended well without all of the metrics that are asked of its key."""
+    def lacking_metrics(self, metrics: Mapping[str, Collection[str]]) -> list[tuple[str, int]]:
+        """The keys and repeats whose newest run ended well but lacks one of the metrics that are asked of its key."""
         wanted = {key: set(names) for key, names in metrics.items() if names}
         found: dict[tuple[str, int], set[str]] = {}
         with as_input_error(self._path):
@@ -67,8 +67,8 @@ class History:
                 found.setdefault((key, repeat), set()).add(name)
         return [(key, repeat) for (key, repeat), names in found.items() if wanted[key] - names]
 
-    def broken_off(self, command: str) -> list[int]:
-        """The newest sweeps, as far as all of them had this command line and did not come to their end."""
+    def unfinished_sweeps(self, command: str) -> list[int]:
+        """The newest sweeps, back to the first that finished or had another command line than this."""
         with as_input_error(self._path):
             rows = self._connection.execute(
                 "SELECT id FROM sweep WHERE id > "
@@ -114,12 +114,12 @@ def history_of(path: str | Path) -> Iterator[History]:
 
 @contextmanager
 def reading(path: str | Path) -> Iterator[sqlite3.Connection]:
-    """A connection that sees one moment of the results; errors as of `history_of`."""
+    """A connection that sees the results as they are at one moment; errors as of `history_of`."""
     path = Path(path)
     connection = open_for_reading(path)
     try:
         with as_input_error(path):
-            connection.execute("BEGIN")  # one moment for all that is read
+            connection.execute("BEGIN")  # so that all that is read is of one moment
             yield connection
     finally:
         connection.close()
