@@ -26,7 +26,7 @@ import psutil
 from harness.errors import InputError
 from harness.measure.conditions import Conditions
 from harness.runner.execute import execute
-from harness.runner.setting import SceneSizeError
+from harness.runner.scene_of_point import SceneSizeError
 from harness.runner.task import Report, Task
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh

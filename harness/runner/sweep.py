@@ -21,12 +21,12 @@ from harness.measure.metrics import METRICS
 from harness.measure.verdicts import expected_refusals, judge
 from harness.motion.hits import Trace
 from harness.runner.estimate import Estimate
-from harness.runner.executor import Alone, Done, Executor
+from harness.runner.executor import Executor, FinishedJob, LocalExecutor
 from harness.runner.key import point_key
 from harness.runner.recording import worth_recording
+from harness.runner.scene_of_point import derived_parameters
 from harness.runner.schedule import Choice, Job, Schedule, schedule
 from harness.runner.servers import Servers, asked_of, mesh_of, task_of
-from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
 from harness.store.database import Database
@@ -137,9 +137,9 @@ def work_of(
         status: dict[str, dict[int, str]] = {key: {} for key in parameters}
         controlled: set[tuple[str, int]] = set()
     else:
-        sweeps = history.broken_off(command) if choice.fresh else None
+        sweeps = history.unfinished_sweeps(command) if choice.fresh else None
         status, controlled = history.done(parameters, sweeps), history.controlled(parameters, sweeps)
-        for key, repeat in history.without(asked):
+        for key, repeat in history.lacking_metrics(asked):
             status[key].pop(repeat, None)
     found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=choice.retry)
     jobs = [job if job.control else replace(job, asked=asked[job.key]) for job in found.jobs]
@@ -182,7 +182,7 @@ def sweep(
     listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
     summary = Summary(work.schedule.kept, lacking=work.lacking)
     watch.begin(work.schedule.jobs, work.estimate)
-    with executor or Alone() as doing:
+    with executor or LocalExecutor() as doing:
         for done in doing.run(work.schedule.jobs, meshes, watch.before):
             _keep(database, number, done)
             _count(summary, done)
@@ -205,7 +205,7 @@ def sweep(
     return summary
 
 
-def _keep(database: Database, sweep: int, done: Done) -> None:
+def _keep(database: Database, sweep: int, done: FinishedJob) -> None:
     """Put a run, or a control, into the database."""
     job, report = done.job, done.report
     if job.control:
@@ -241,7 +241,7 @@ def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], data
     return list(jobs.values())
 
 
-def _count(summary: Summary, done: Done) -> None:
+def _count(summary: Summary, done: FinishedJob) -> None:
     if done.job.control:
         summary.controls += 1
         return

@@ -225,7 +225,7 @@ class Database:
             )
 
     def add_verdicts(self, sweep: int, experiment: int, kind: VerdictKind, rows: Sequence[VerdictRow]) -> None:
-        """Keep the verdicts on an experiment's expectations or claims, in order, in place of the sweep's earlier ones."""
+        """Keep the verdicts on an experiment's expectations or claims, in order; a later call replaces an earlier."""
         with self._transaction() as connection:
             connection.execute(f"DELETE FROM {kind} WHERE experiment = ? AND sweep = ?", (experiment, sweep))
             connection.executemany(
