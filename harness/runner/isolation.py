@@ -19,7 +19,7 @@ from harness.errors import InputError
 from harness.measure.conditions import Conditions
 from harness.process_limits import limit
 from harness.runner.execute import execute
-from harness.runner.setting import SceneSizeError
+from harness.runner.scene_of_point import SceneSizeError
 from harness.runner.task import Report, Task
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
