@@ -64,6 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
+    from harness.cli.interruption import exit_code
     from harness.cli.progress import Progress
     from harness.runner.preparation import prepare
     from harness.runner.sweep import sweep
@@ -84,9 +85,9 @@ def run(arguments: argparse.Namespace) -> int:
             summary = sweep(
                 chosen, meshes, database, command=command, watch=progress, executor=_executor(arguments), choice=choice
             )
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interruption:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
-            return 130
+            return exit_code(interruption)
         compared = _compare(chosen, meshes, database, command, arguments)
     _say(summary, arguments)
     for line in compared:
