@@ -43,10 +43,10 @@ class Reliable(io.TextIOWrapper):
 
     def __init__(self, descriptor: int, like: TextIO, errors: str) -> None:
         super().__init__(
-            open(descriptor, "wb", closefd=False),
+            os.fdopen(descriptor, "wb", closefd=False),
             encoding=like.encoding,
             errors=errors,
-            line_buffering=like.line_buffering,
+            line_buffering=bool(like.line_buffering),
             write_through=getattr(like, "write_through", False),
         )
         self.lost: OSError | None = None
@@ -87,4 +87,4 @@ def _fill_closed() -> None:
             os.set_inheritable(descriptor, True)
     for name, descriptor in (("stdout", 1), ("stderr", 2)):
         if getattr(sys, name) is None:
-            setattr(sys, name, open(descriptor, "w", closefd=False))
+            setattr(sys, name, os.fdopen(descriptor, "w", closefd=False))
