@@ -67,8 +67,9 @@ def strict_step(function: Function) -> Function:
 
 def _kept(function: Any, **options: Any) -> Any:
     """Compile, or load what was compiled before."""
-    with own_cache(_ROOMS) as somewhere:
-        if somewhere:
-            with suppress(RuntimeError):  # numba finds that the folder takes no files, as on a full disk
-                return forgiving(_njit(cache=True, **options)(function))
+    with own_cache(_ROOMS) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
+        made = _njit(cache=bool(folder), **options)(function)
+        # where ours takes none, as on a full disk, numba turns to one that old code of ours may stand in
+        if not folder or made._cache.cache_path.startswith(folder):
+            return forgiving(made)
     return _njit(**options)(function)

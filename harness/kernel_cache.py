@@ -28,7 +28,7 @@ def user_cache() -> Path | None:
 
 
 @contextmanager
-def own_cache(rooms: Sequence[str]) -> Iterator[bool]:
+def own_cache(rooms: Sequence[str]) -> Iterator[str]:
     """Keep what is compiled in a folder of these very sources.
 
     numba looks only at the file of a kernel to tell whether it is stale, and would go on running old code of another
@@ -40,14 +40,14 @@ def own_cache(rooms: Sequence[str]) -> Iterator[bool]:
 
     Yields
     ------
-    bool
-        Whether there is a folder to keep it in.
+    str
+        The folder; empty where there is none.
     """
     config: Any = numba.config
     theirs = config.CACHE_DIR
     config.CACHE_DIR = theirs or _folder(tuple(rooms)) or ""
     try:
-        yield bool(config.CACHE_DIR)
+        yield str(config.CACHE_DIR)
     finally:
         config.CACHE_DIR = theirs
 
