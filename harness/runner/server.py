@@ -54,6 +54,7 @@ def _serve(channel: Connection) -> None:
             meshes[received.digest] = received
             continue
         _warm_up(received)
+        channel.send("warm")
         report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
         if report is None:
             return
