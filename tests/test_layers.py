@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[1] / "harness"
-BASE = {"arrays", "errors", "kernel", "kernel_cache", "vocabulary"}
+BASE = {"arrays", "errors", "kernel", "kernel_cache", "python_child", "vocabulary"}
 GEOMETRY = {"scene", "narrowphase", "broadphase", "backends"}
 KNOWS = {
     "experiment": set(),

@@ -17,6 +17,15 @@ from harness.backends.protocol import Backend
 from harness.errors import InputError
 
 GROUP = "harness.backends"
+OURS = "harness"  # the name of this package where it is installed
+
+
+class BackendError(InputError):
+    """A backend cannot be used; `why` says why, without its name."""
+
+    def __init__(self, name: str, why: str) -> None:
+        super().__init__(f'backend "{name}" cannot be used: {why}')
+        self.why = why
 
 
 def names() -> list[str]:
@@ -45,45 +54,25 @@ def create(name: str, algorithm: str = "native") -> Backend:
             made = declared[name].load()
             backend: Backend = made() if algorithm == "native" else made(algorithm)
     except ImportError as error:
-        raise InputError(f'backend "{name}" cannot be used: {_why(declared[name], error)}') from error
+        raise BackendError(name, _why(declared[name], error)) from error
     return backend
-
-
-def missing(name: str) -> str | None:
-    """Why a backend that is an extra of its package cannot be used, with what to do about it; None if it can.
-
-    Of other backends nothing is said: what they import is looked at where it can do no harm.
-    """
-    entry = _declared().get(name)
-    if entry is None or not entry.extras:
-        return None
-    try:
-        with silence():
-            entry.load()
-    except ImportError as error:
-        return f'backend "{name}" cannot be used: {_why(entry, error)}'
-    return None
 
 
 def install_command(name: str) -> str | None:
     """What brings the library of a declared backend, where it is an extra."""
     entry = _declared()[name]
-    return _command(entry) if entry.extras else None
+    return _command(entry) if _extras(entry) else None
 
 
-def available() -> dict[str, str | None]:
-    """Every declared backend by name, with why it cannot be used, or None if it can."""
-    found: dict[str, str | None] = {}
-    for name, entry in sorted(_declared().items()):
-        try:
-            with silence():
-                entry.load()
-            found[name] = None
-        except ImportError as error:
-            found[name] = _why(entry, error)
-        except Exception as error:  # a plugin may fail in any way; it must not take the others with it
-            found[name] = f"{type(error).__name__}: {error}"
-    return found
+def ours(name: str) -> bool:
+    """Whether a declared backend comes with this package."""
+    return _ours(_declared()[name])
+
+
+def is_extra(name: str) -> bool:
+    """Whether a backend is declared as an extra of its package."""
+    entry = _declared().get(name)
+    return entry is not None and bool(_extras(entry))
 
 
 @contextmanager
@@ -98,6 +87,8 @@ def silence() -> Iterator[None]:
     try:
         yield
     finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
         ctypes.CDLL(None).fflush(None)  # what C has buffered must go before the real output is back
         for stream, copy in kept:
             os.dup2(copy, stream)
@@ -106,12 +97,23 @@ def silence() -> Iterator[None]:
 
 
 def _why(entry: EntryPoint, error: ImportError) -> str:
-    return f"not installed; {_command(entry)}" if entry.extras else f"{type(error).__name__}: {error}"
+    return f"not installed; {_command(entry)}" if _extras(entry) else f"{type(error).__name__}: {error}"
 
 
 def _command(entry: EntryPoint) -> str:
-    package = entry.dist.name if entry.dist else "harness"
-    return f"pip install '{package}[{','.join(entry.extras)}]'"
+    package = entry.dist.name if entry.dist else OURS
+    return f"pip install '{package}[{','.join(_extras(entry))}]'"
+
+
+def _extras(entry: EntryPoint) -> list[str]:
+    try:
+        return entry.extras
+    except (AttributeError, AssertionError):  # a value that names no module and no class
+        return []
+
+
+def _ours(entry: EntryPoint) -> bool:
+    return entry.dist is not None and entry.dist.name == OURS
 
 
 def _declared() -> dict[str, EntryPoint]:
@@ -120,5 +122,8 @@ def _declared() -> dict[str, EntryPoint]:
 
 @lru_cache(maxsize=8)
 def _declared_on(path: tuple[str, ...]) -> dict[str, EntryPoint]:
-    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend."""
-    return {entry.name: entry for entry in entry_points(group=GROUP)}
+    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend.
+
+    A name of ours stays ours, whoever declares it besides.
+    """
+    return {entry.name: entry for entry in sorted(entry_points(group=GROUP), key=_ours)}

@@ -15,7 +15,7 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from harness.backends.registry import missing
+from harness.backends.statement import missing
 from harness.compare.comparison import compare
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.flight import fly_both

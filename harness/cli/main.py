@@ -27,6 +27,9 @@ COMMANDS = {
 }
 
 
+_CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line.
 
@@ -69,11 +72,16 @@ def _run(words: Sequence[str]) -> int:
         return int(module.run(command.parse_args(words[1:])))
     except InputError as error:
         for problem in error.problems:
-            print(problem, file=sys.stderr)
+            print(_one_line(str(problem)), file=sys.stderr)
         return 2
     except KeyboardInterrupt as interruption:
         print("interrupted", file=sys.stderr)
         return exit_code(interruption)
+
+
+def _one_line(text: str) -> str:
+    """Without the letters, as file names may hold, that would end the line or do something to a terminal."""
+    return "".join(letter if letter >= " " and letter not in _CONTROLS else repr(letter)[1:-1] for letter in text)
 
 
 def _parser() -> argparse.ArgumentParser:

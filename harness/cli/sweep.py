@@ -110,7 +110,10 @@ def _choice(arguments: argparse.Namespace) -> Choice:
         elif leaf not in (*LEAVES, *DERIVED):
             problems.append(Problem(f"--only {text}: unknown leaf {shown(leaf)}{near(leaf, (*LEAVES, *DERIVED))}"))
         else:
-            only.setdefault(leaf, []).append(read_value(value))
+            try:
+                only.setdefault(leaf, []).append(read_value(value))
+            except InputError as error:
+                problems += [Problem(f"--only {text}: {problem.message}") for problem in error.problems]
     if problems:
         raise InputError(problems)
     return Choice(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
@@ -223,6 +226,8 @@ def _foretell(
 
 def _say(summary: Summary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
+    import shlex
+
     from harness.runner.estimate import spoken
 
     if not arguments.quiet and summary.experiments:
@@ -243,7 +248,7 @@ def _say(summary: Summary, arguments: argparse.Namespace) -> None:
         print(f"points passed over: {why}")
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
-    option = "" if arguments.db == DATABASE else f" --db {arguments.db}"
+    option = "" if arguments.db == DATABASE else f" --db {shlex.quote(arguments.db)}"
     print(f"Now `harness report{option}` turns {arguments.db} into pages.")
 
 

@@ -13,6 +13,7 @@ from harness.measure.noise import told_apart
 from harness.measure.statistics import CONFIDENCE, NOISY_ABOVE, Summary
 from harness.report.criteria import refusals
 from harness.report.crossings import crossing_sentences
+from harness.report.missing import is_judged
 from harness.report.quantity import exponent_text, number, plural, quantity
 from harness.report.ranking import Growth, Ranked, rank, times_worse
 from harness.report.series import Arrangement, Cell, Series
@@ -48,7 +49,7 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
         *_exponents(arrangement, growths),
         *_change(arrangement),
     ]
-    sentences += _outcomes(record.claims, "claim")
+    sentences += _outcomes([row for row in record.claims if is_judged(row)], "claim")
     if not sentences and any(not cell.good.empty for cell in arrangement.cells):
         sentences += _single(arrangement)
     kept = [row for row in record.expectations if row.verdict == "holds"]
@@ -59,7 +60,7 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
             "broken" if row.verdict == "fails" else row.verdict, _ended(row.statement)
         )
         for row in record.expectations
-        if row.verdict != "holds"
+        if row.verdict != "holds" and is_judged(row)
     ]
     return Findings(
         tuple(sentences), (*failures, *_failed_runs(record, arrangement)), tuple(_warnings(record, arrangement))
@@ -239,13 +240,6 @@ def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Mar
                 number(total - good), plural(total, "run"), kinds
             )
         )
-    missing = sum(cell.runs.empty for cell in arrangement.cells)
-    if missing:
-        found.append(
-            Markup("<strong>{}</strong> not run yet; the same sweep command does the rest.").format(
-                _are(missing, "point")
-            )
-        )
     return found
 
 
@@ -280,8 +274,6 @@ def _warnings(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup
     unreported = [name for name in asked if not any(len(cell.values(name)) for cell in arrangement.cells)]
     if unreported and any(not cell.good.empty for cell in arrangement.cells):
         found.append(Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported)))
-    if record.sweep.finished is None:
-        found.append(Markup("<strong>The sweep did not come to its end</strong>; the same command does the rest."))
     where = {machine for cell in arrangement.cells for machine in cell.runs["machine"]}
     if len(where) > 1:
         found.append(
@@ -313,10 +305,6 @@ def _times(ratio: Summary) -> Markup:
 
 def _full(series: Series) -> str:
     return f"{series.label}, {series.panel}" if series.panel else series.label
-
-
-def _are(count: int, noun: str) -> str:
-    return f"{plural(count, noun)} {'is' if count == 1 else 'are'}"
 
 
 def _ended(text: str) -> str:

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from harness.report.accuracy import AccuracySection
 from harness.report.figures import Figure
+from harness.report.missing import is_judged
 from harness.report.pages import ExperimentPage
 from harness.report.quantity import plural
 from harness.report.stability import Matrix, is_case
@@ -39,7 +40,7 @@ class Listed:
         if self.page.failed:
             found.append((f"{self.page.failed} failed", "failed"))
         for verdict in ("holds", "fails", "undecided"):
-            count = sum(row.verdict == verdict for row in self.page.record.claims)
+            count = sum(row.verdict == verdict for row in self.page.record.claims if is_judged(row))
             if count:
                 word = {"holds": "hold", "fails": "fail"}.get(verdict, verdict) if count > 1 else verdict
                 found.append((f"{plural(count, 'claim')} {word}", verdict))
@@ -99,7 +100,7 @@ class Overview:
     @cached_property
     def claims(self) -> list[tuple[Listed, VerdictRow]]:
         """Every claim, with the experiment that makes it."""
-        return [(entry, row) for entry in self.listed for row in entry.page.record.claims]
+        return [(entry, row) for entry in self.listed for row in entry.page.record.claims if is_judged(row)]
 
     @property
     def claims_by_source(self) -> list[tuple[str, list[tuple[Listed, VerdictRow]]]]:

@@ -20,6 +20,7 @@ from harness.report import palette
 from harness.report.accuracy import AccuracySection, sections
 from harness.report.backends import BackendsPage
 from harness.report.comparison import Comparison
+from harness.report.missing import is_judged, missing_runs
 from harness.report.overview import Overview
 from harness.report.pages import (
     ExperimentPage,
@@ -98,9 +99,10 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
         for record in records
     ]
     environment = _environment()
+    environment.globals["missing"] = missing_runs(records, table)
     rows = {page.record.name: page.published for page in pages}
     # claims of the cases of stability stand in their matrix, where they say how far a method falls short
-    claims = any(page.record.claims for page in pages if not is_case(page))
+    claims = any(is_judged(row) for page in pages if not is_case(page) for row in page.record.claims)
     compared = newest_comparison(database)
     accuracy, stability = sections(pages), matrix(pages)
     backends = BackendsPage(comparisons(database), table)
@@ -190,6 +192,7 @@ def _experiment(
         environment=[*_facts(page.record.sweep), *page.conditions],
         downloads=downloads,
         footer=_footer([page.record]),
+        missing=missing_runs([page.record], page.runs),
     )
     yield f"{page.folder}/index.html", text
     if replay is not None:

@@ -21,6 +21,7 @@ from markupsafe import Markup
 from harness.measure.limits import Limits, limits
 from harness.measure.selection import matching, which
 from harness.report.criteria import as_criterion
+from harness.report.missing import is_complete
 from harness.report.pages import ExperimentPage
 from harness.report.quantity import leaf_text, number, plural
 from harness.store.records import VerdictRow
@@ -182,7 +183,7 @@ def is_case(page: ExperimentPage) -> bool:
 
 
 def _cases(page: ExperimentPage) -> list[Case]:
-    if page.runs.empty:
+    if page.runs.empty or not is_complete(page.record):
         return []
     shapes = [str(shape) for shape in page.runs["shape"].unique()]
     return [Case(page, shape) for shape in shapes] if len(shapes) > 1 else [Case(page, None)]

@@ -11,7 +11,8 @@ from math import isfinite
 from typing import Any
 
 from harness.backends import registry
-from harness.backends.protocol import approximations, assemble
+from harness.backends.protocol import assemble
+from harness.backends.statement import approximation
 from harness.errors import InputError
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
@@ -133,7 +134,7 @@ def plan_of(point: Point, scene: Scene) -> Plan:
     """
     approximated = None
     if len(scene.bodies) > 1 and point.engine.algorithm == "native":
-        approximated = approximations(registry.create(point.engine.backend)).get(scene.shape)
+        approximated = approximation(point.engine.backend, scene.shape)
     return make_plan(
         scene,
         backend=point.engine.backend,

@@ -135,9 +135,9 @@ def _be_the_run(
         if core is not None:
             with suppress(OSError):
                 os.sched_setaffinity(0, {core})
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_FSIZE, (_OUTPUT_LIMIT, _OUTPUT_LIMIT))
-        resource.setrlimit(resource.RLIMIT_AS, (_virtual_memory() + task.memory,) * 2)
+        _lower(resource.RLIMIT_CORE, 0)
+        _lower(resource.RLIMIT_FSIZE, _OUTPUT_LIMIT)
+        _lower(resource.RLIMIT_AS, _virtual_memory() + task.memory)
         _send(sender, _reported(task, mesh))
     except BaseException:
         traceback.print_exc()
@@ -146,6 +146,13 @@ def _be_the_run(
             sys.stdout.flush()
             sys.stderr.flush()
         os._exit(0)
+
+
+def _lower(what: int, most: int) -> None:
+    """Lower a limit of this process for good; one that is lower already cannot be raised, and stays."""
+    _, hard = resource.getrlimit(what)
+    most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+    resource.setrlimit(what, (most, most))
 
 
 def _reported(task: Task, mesh: Mesh | None) -> bytes:

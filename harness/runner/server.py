@@ -16,6 +16,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from harness.backends import registry
+from harness.backends.statement import ask_strangers_here
 from harness.runner.isolation import adopt_orphans, die_with_parent, run_isolated
 from harness.runner.task import Task
 from harness.runner.warm_up import warm_up
@@ -31,6 +32,7 @@ def main() -> None:
     if os.getppid() != parent:
         return
     adopt_orphans()
+    ask_strangers_here()
     with suppress(EOFError, ConnectionError):  # the other side has gone
         _prepare(channel, sys.argv[2])
         _serve(channel)

@@ -10,7 +10,6 @@ import os
 import socket
 import struct
 import subprocess
-import sys
 import uuid
 from collections.abc import Mapping
 from contextlib import suppress
@@ -25,6 +24,7 @@ import psutil
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
+from harness.python_child import python_command
 from harness.runner.task import Report, Task
 from harness.scene.mesh import Mesh
 
@@ -150,7 +150,7 @@ class _Server:
         with theirs:
             try:
                 self._process = subprocess.Popen(
-                    [sys.executable, "-m", "harness.runner.server", str(theirs.fileno()), backend],
+                    python_command("harness.runner.server", str(theirs.fileno()), backend),
                     pass_fds=[theirs.fileno()],
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,  # that is for results alone
