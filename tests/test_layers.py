@@ -10,7 +10,17 @@ import pytest
 from harness.vocabulary import ALGORITHMS
 
 PACKAGE = Path(__file__).parents[1] / "harness"
-BASE = {"arrays", "child_process", "errors", "kernel", "modules", "process_limits", "vocabulary"}
+BASE = {
+    "arrays",
+    "child_process",
+    "errors",
+    "kernel",
+    "kernel_cache",
+    "modules",
+    "process_limits",
+    "python_child",
+    "vocabulary",
+}
 KERNELS = {"scene", "narrowphase", "broadphase"}
 FLIGHT = KERNELS | {"backends", "measure", "motion", "methods"}
 KNOWS = {

@@ -27,6 +27,14 @@ GROUP = "harness.backends"
 PROGRAM = "harness"
 
 
+class BackendError(InputError):
+    """A backend cannot be used; `why` says why, without its name."""
+
+    def __init__(self, name: str, why: str) -> None:
+        super().__init__(f'backend "{name}" cannot be used: {why}')
+        self.why = why
+
+
 @dataclass(frozen=True)
 class Declaration:
     """A backend that is declared, installed or not.
@@ -36,11 +44,13 @@ class Declaration:
     load : imports its class
     command : what brings its library, where that is an extra of its own
     packages : whose versions its verdicts and times depend on
+    ours : whether it comes with this program
     """
 
     load: Callable[[], type[Backend]]
     command: str | None = None
     packages: frozenset[str] = frozenset()
+    ours: bool = True
 
 
 def names() -> list[str]:
@@ -72,24 +82,8 @@ def create(name: str) -> Backend:
         with silence():
             backend = declared[name].load()()
     except ImportError as error:
-        raise InputError(f'backend "{name}" cannot be used: {_why(declared[name], error)}') from error
+        raise BackendError(name, _why(declared[name], error)) from error
     return backend
-
-
-def missing(name: str) -> str | None:
-    """Why a backend that is an extra of its package cannot be used, with what to do about it; None if it can.
-
-    Of other backends nothing is said: what they import is looked at where it can do no harm.
-    """
-    found = _declared().get(name)
-    if found is None or found.command is None:
-        return None
-    try:
-        with silence():
-            found.load()
-    except ImportError as error:
-        return f'backend "{name}" cannot be used: {_why(found, error)}'
-    return None
 
 
 def install_command(name: str) -> str | None:
@@ -97,19 +91,14 @@ def install_command(name: str) -> str | None:
     return _declared()[name].command
 
 
-def available() -> dict[str, str | None]:
-    """Every declared backend by name, with why it cannot be used, or None if it can."""
-    found: dict[str, str | None] = {}
-    for name, declared in sorted(_declared().items()):
-        try:
-            with silence():
-                declared.load()
-            found[name] = None
-        except ImportError as error:
-            found[name] = _why(declared, error)
-        except Exception as error:  # a plugin may fail in any way; it must not take the others with it
-            found[name] = f"{type(error).__name__}: {error}"
-    return found
+def ours(name: str) -> bool:
+    """Whether a declared backend comes with this program."""
+    return _declared()[name].ours
+
+
+def is_extra(name: str) -> bool:
+    """Whether a backend is declared as an extra of its package."""
+    return name in _declared() and _declared()[name].command is not None
 
 
 @contextmanager
@@ -124,6 +113,8 @@ def silence() -> Iterator[None]:
     try:
         yield
     finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
         ctypes.CDLL(None).fflush(None)  # what C has buffered must go before the real output is back
         for stream, copy in kept:
             os.dup2(copy, stream)
@@ -141,17 +132,29 @@ def _declared() -> dict[str, Declaration]:
 
 @lru_cache(maxsize=8)
 def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
-    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend."""
-    pointed = {entry.name: _pointed(entry) for entry in entry_points(group=GROUP)}
-    return {**_in_this_folder(), **pointed}
+    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend.
+
+    A name of ours stays ours, whoever declares it besides.
+    """
+    pointed = [(entry.name, _pointed(entry)) for entry in entry_points(group=GROUP)]
+    theirs = {name: found for name, found in pointed if not found.ours}
+    return {**theirs, **_in_this_folder(), **{name: found for name, found in pointed if found.ours}}
 
 
 def _pointed(entry: EntryPoint) -> Declaration:
-    package = entry.dist.name if entry.dist else PROGRAM
-    extras = entry.extras
-    command = f"pip install '{package}[{','.join(extras)}]'" if extras else None
-    needed = _required(package, *extras) if package == PROGRAM else _required(package, *extras) | {package}
-    return Declaration(entry.load, command, needed)
+    package = entry.dist.name if entry.dist else ""
+    extras = _extras(entry)
+    command = f"pip install '{package or PROGRAM}[{','.join(extras)}]'" if extras else None
+    needed = _required(package, *extras) if package else frozenset[str]()
+    ours = package == PROGRAM
+    return Declaration(entry.load, command, needed if ours or not package else needed | {package}, ours)
+
+
+def _extras(entry: EntryPoint) -> list[str]:
+    try:
+        return entry.extras
+    except (AttributeError, AssertionError):  # a value that names no module and no class
+        return []
 
 
 def _in_this_folder() -> dict[str, Declaration]:

@@ -15,7 +15,8 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from harness.backends.registry import missing, packages
+from harness.backends.registry import packages
+from harness.backends.statement import missing
 from harness.compare.comparison import compare
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.free_running import run_both

@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from harness.backends import registry
+from harness.cli.interruption import heed
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.experiment.leaves import LEAVES
@@ -37,14 +38,14 @@ Meshes = Mapping[Path, Mesh]
 
 
 def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -> int:
-    """Serve the live page until Ctrl-C.
+    """Serve the live page until Ctrl-C, or SIGTERM.
 
     Parameters
     ----------
     experiment, meshes : loaded and opened; its first point is what the page begins with
     show : opens an address
     """
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell has started it in the background
+    heed(signal.SIGINT)  # also where a shell has started it in the background
     settings = _settings(experiment, meshes)
     with Servers() as servers:
 

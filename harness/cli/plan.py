@@ -33,13 +33,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))
     experiment = experiments[0]
-    try:
-        plans = [
-            (point, plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)))
-            for point in experiment.points
-        ]
-    except (SceneSizeError, PlacementError) as error:
-        raise InputError(f"{arguments.path}: {error}") from error
+    plans = []
+    for point in experiment.points:
+        try:
+            scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
+        except (SceneSizeError, PlacementError) as error:
+            leaf = "count" if point.scene.bodies is None else "bodies"
+            raise InputError([experiment.leaf_problem(leaf, point.parameters[leaf], str(error))]) from error
+        plans.append((point, plan_of(point, scene)))
     if arguments.json:
         runs = [
             {

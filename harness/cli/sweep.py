@@ -64,6 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
+    from harness.cli.interruption import exit_code
     from harness.cli.progress import Progress
     from harness.runner.preparation import prepare
     from harness.runner.sweep import sweep
@@ -90,9 +91,9 @@ def run(arguments: argparse.Namespace) -> int:
                 executor=_executor(arguments),
                 selection=selection,
             )
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interruption:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
-            return 130
+            return exit_code(interruption)
         compared = _compare(chosen, meshes, database, command, arguments)
     _say(summary, arguments)
     for line in compared:
@@ -115,7 +116,10 @@ def _selection(arguments: argparse.Namespace) -> RunSelection:
         elif leaf not in (*LEAVES, *DERIVED):
             problems.append(Problem(f"--only {text}: unknown leaf {shown(leaf)}{near(leaf, (*LEAVES, *DERIVED))}"))
         else:
-            only.setdefault(leaf, []).append(read_value(value))
+            try:
+                only.setdefault(leaf, []).append(read_value(value))
+            except InputError as error:
+                problems += [Problem(f"--only {text}: {problem.message}") for problem in error.problems]
     if problems:
         raise InputError(problems)
     return RunSelection(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
@@ -228,6 +232,8 @@ def _foretell(
 
 def _say(summary: Summary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
+    import shlex
+
     from harness.runner.estimate import spoken
 
     if not arguments.quiet and summary.experiments:
@@ -248,7 +254,7 @@ def _say(summary: Summary, arguments: argparse.Namespace) -> None:
         print(f"points passed over: {why}")
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
-    option = "" if arguments.db == DATABASE else f" --db {arguments.db}"
+    option = "" if arguments.db == DATABASE else f" --db {shlex.quote(arguments.db)}"
     print(f"Now `harness report{option}` turns {arguments.db} into pages.")
 
 

@@ -60,8 +60,9 @@ class Complaints:
             return
         ordered = sorted(dict.fromkeys(self.problems), key=lambda problem: (problem.line or 0, problem.column or 0))
         if len(ordered) > MOST_SAID:
-            rest = Problem(f"and {len(ordered) - MOST_SAID} problems more", self.document.file)
-            ordered = [*ordered[:MOST_SAID], rest]
+            first = ordered[MOST_SAID]
+            rest = f"and {len(ordered) - MOST_SAID} problems more, from here on"
+            ordered = [*ordered[:MOST_SAID], Problem(rest, first.file, first.line, first.column)]
         raise InputError(ordered)
 
 

@@ -93,7 +93,7 @@ def read_document(text: str | bytes, file: str) -> Document:
     """
     document = _compose(_decode(text, file), file)
     if document is None:
-        raise InputError([Problem("the file is empty; `harness new NAME` writes one to start from", file)])
+        raise InputError([Problem("the file is empty; `harness new NAME` writes one to start from", file, 1, 1)])
     if not isinstance(document.value, dict):
         wrong = document.problem((), f"an experiment must be a mapping of keys to values, not {shown(document.value)}")
         raise InputError([*document.problems, wrong])
@@ -108,17 +108,24 @@ def read_value(text: str) -> Any:
     InputError
         If it is no YAML; without places, for there is no file.
     """
-    document = _compose(_decode(text, ""), "")
+    try:
+        document = _compose(_decode(text, ""), "")
+    except InputError as error:
+        raise _without_places(error.problems) from None
     if document is None:
         return None
     if document.problems:
-        raise InputError([Problem(problem.message) for problem in document.problems])
+        raise _without_places(document.problems)
     return document.value
+
+
+def _without_places(problems: Sequence[Problem]) -> InputError:
+    return InputError([Problem(problem.message) for problem in problems])
 
 
 def _decode(text: str | bytes, file: str) -> str:
     if len(text) > LARGEST_FILE:
-        raise InputError([Problem(f"the file is larger than {LARGEST_FILE // 1_000_000} MB", file)])
+        raise InputError([Problem(f"the file is larger than {LARGEST_FILE // 1_000_000} MB", file, 1, 1)])
     text = (text if isinstance(text, str) else _utf8(text, file)).removeprefix("\ufeff")
     if found := _UNPRINTABLE.search(text):
         message = f"the character U+{ord(found[0]):04X} is not allowed; YAML is printable text"

@@ -69,6 +69,8 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
             override(declaration, setting, value, complaints)
     check(declaration, complaints)
 
+    if not _is_text(name_of(path)):
+        complaints.add((), "the name of this file is not UTF-8, and results are kept by name: rename it")
     title = _text(file, "title", settings, complaints)
     if title is None and file.get("title") is None:
         complaints.add((), '"title" is missing')
@@ -109,6 +111,11 @@ def name_of(path: Path) -> str:
     *folders, file = absolute.parts
     below = folders[len(folders) - folders[::-1].index(FOLDER) :] if FOLDER in folders else []
     return "/".join([*below, file.removesuffix(".yaml").removesuffix(".yml")])
+
+
+def _is_text(name: str) -> bool:
+    """Whether it came from bytes that are UTF-8."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
 def find_experiments(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from harness.backends import registry
-from harness.backends.protocol import Backend, approximations
+from harness.backends.protocol import Backend
+from harness.backends.statement import approximation
 from harness.errors import InputError
 from harness.methods.stages import Plan
 from harness.methods.stepped import SteppedMethod
@@ -22,7 +23,7 @@ class Native(SteppedMethod):
         return f"{self.name.backend} finds the touching pairs by itself"
 
     def warnings(self, scene: Scene) -> tuple[str, ...]:
-        replaced = approximations(self.backend()).get(scene.shape) if len(scene.bodies) > 1 else None
+        replaced = approximation(self.name.backend, scene.shape) if len(scene.bodies) > 1 else None
         return (f"APPROXIMATION: {replaced}",) if replaced else ()
 
     def detector(self, scene: Scene, plan: Plan) -> Detector:

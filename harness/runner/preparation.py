@@ -7,7 +7,8 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-from harness.backends.registry import missing, names
+from harness.backends.registry import names
+from harness.backends.statement import missing
 from harness.errors import InputError, Problem
 from harness.experiment.experiment import Experiment
 from harness.experiment.load import find_experiments, load
@@ -90,7 +91,7 @@ def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Ite
             return
         if other.name == experiment.name:
             message = f'this is called "{experiment.name}" as {other.path} is; results are kept by name: rename one'
-            yield Problem(message, str(experiment.path))
+            yield experiment.problem((), message)
 
 
 def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Problem]:

@@ -16,6 +16,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from harness.backends import registry
+from harness.backends.statement import ask_strangers_here
 from harness.process_limits import adopt_orphans, die_with_parent
 from harness.runner.isolation import run_isolated
 from harness.runner.task import Task
@@ -32,6 +33,7 @@ def main() -> None:
     if os.getppid() != parent:
         return
     adopt_orphans()
+    ask_strangers_here()
     with suppress(EOFError, ConnectionError):  # the other side has gone
         _prepare(channel, sys.argv[2])
         _serve(channel)
@@ -55,6 +57,7 @@ def _serve(channel: Connection) -> None:
             meshes[received.digest] = received
             continue
         _warm_up(received)
+        channel.send("warm")
         report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
         if report is None:
             return

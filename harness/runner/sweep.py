@@ -12,7 +12,8 @@ from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
-from harness.backends.registry import missing, packages
+from harness.backends.registry import packages
+from harness.backends.statement import missing
 from harness.errors import InputError
 from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point

@@ -26,6 +26,8 @@ _SENTENCES = {
     "sweep into another file with --db",
     "disk is full": "cannot grow: the disk is full. Every finished run is kept; make room, and the same command "
     "does the rest",
+    "disk I/O error": "cannot be written to: its disk is full or gone, or the file may not grow (`ulimit -f`). Every "
+    "finished run is kept; mend that, and the same command does the rest",
     "readonly": "cannot be written to: it, its folder or its disk is read-only. Give another file with --db",
     "locked": f"is locked: another program has kept it from being used for {BUSY_SECONDS:g} s. Close that program, and "
     "the same command goes on from here",
@@ -124,8 +126,13 @@ def _connect_read_only(path: Path) -> sqlite3.Connection:
         # can be read without them
         connection.close()
         log = path.with_name(f"{path.name}-wal")
-        if not any(part in str(error) for part in ("unable to open", "readonly")) or log.exists():
+        if not any(part in str(error) for part in ("unable to open", "readonly")):
             raise
+        if log.exists() and log.stat().st_size > 0:
+            raise InputError(
+                f"{path}: cannot be read where it cannot be written to, for its sweep was killed. Copy it "
+                f"with {log.name} into a folder that can be written to, and read it there"
+            ) from error
         connection = _connect(path, "ro&immutable=1")
     except BaseException:
         connection.close()

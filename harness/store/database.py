@@ -36,6 +36,7 @@ class Database:
         self.path = path
         self._connection = connection
         self._lock = lock
+        self._file = os.stat(path)
 
     @classmethod
     def open(cls, path: str | Path, create: bool = True) -> Database:
@@ -273,6 +274,7 @@ class Database:
     def _transaction(self) -> Iterator[sqlite3.Connection]:
         connection = self._connection
         with as_input_error(self.path):
+            self._require_file()
             connection.execute("BEGIN IMMEDIATE")
             try:
                 yield connection
@@ -281,6 +283,18 @@ class Database:
                 if connection.in_transaction:  # a full disk has ended it already
                     connection.execute("ROLLBACK")
                 raise
+
+    def _require_file(self) -> None:
+        """SQLite goes on writing to a file that has no name any more."""
+        try:
+            if os.path.samestat(os.stat(self.path), self._file):
+                return
+        except OSError:
+            pass
+        raise InputError(
+            f"{self.path}: was removed or replaced while it was written to, with what it held; the same command "
+            "measures anew"
+        )
 
 
 def _machine(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> int:
@@ -333,11 +347,11 @@ def _row_id(cursor: sqlite3.Cursor) -> int:
 
 def _json(value: Any) -> str:
     """JSON text as the standard has it; a number that is none is an error of the caller."""
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return str(_text(json.dumps(value, ensure_ascii=False, allow_nan=False)))
 
 
 def _text(text: str | None) -> str | None:
-    """Text that can be stored, whatever bytes a run printed."""
+    """Text that can be stored, whatever bytes a run printed or a file is called by."""
     return None if text is None else text.encode("utf-8", "replace").decode()
 
 

@@ -27,6 +27,9 @@ from harness.store.records import (
     VerdictRow,
 )
 
+# What is said of a row of `expect` or `claims` that the sweep did not come to judge.
+NOT_JUDGED = "not judged yet: the sweep has not come to its end"
+
 _FIXED = ("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade", "machine")
 
 
@@ -213,7 +216,7 @@ def _verdicts(
     )
     if judged:
         return judged
-    return tuple(VerdictRow(row, "undecided", "not judged yet: the sweep has not finished") for row in criteria)
+    return tuple(VerdictRow(row, "undecided", NOT_JUDGED) for row in criteria)
 
 
 def _sweeps(connection: sqlite3.Connection) -> list[SweepRecord]:
