@@ -34,7 +34,7 @@ def inner(function: Function) -> Function:
 
 
 # Where kernels, and the constants that are compiled into them, stand.
-_ROOMS = ("broadphase", "measure", "motion", "narrowphase", "scene")
+_ROOMS = ("broadphase", "measure", "methods", "motion", "narrowphase", "reference", "scene")
 
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
 # `nsz` concern divisions and the sign of zero.

@@ -50,7 +50,7 @@ def test_an_experiment_is_added_as_it_says(tmp_path, monkeypatch, capsys):
 def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
     namespace: dict[str, object] = {}
     exec(blocks("Add a backend", "python")[0], namespace)
-    mine, fcl = namespace["Mine"](), Fcl("brute-force")
+    mine, fcl = namespace["Mine"](), Fcl()
     assert isinstance(mine, Backend)
     text = "title: t\nscene: {shape: sphere, count: 40, box: [4, 4, 4], overlap: allow}\n"
     scene = build_scene(load_text(text, "readme.yaml").points[0], None)

@@ -108,3 +108,6 @@ def _lists(solid: Surface) -> tuple[coal.StdVec_Vec3s, coal.StdVec_Triangle]:
     for face in solid.faces.tolist():
         faces.append(coal.Triangle(*face))
     return vertices, faces
+
+
+BACKEND = Coal

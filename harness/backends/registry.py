@@ -1,23 +1,48 @@
-"""Backends by name, found by the entry points of the group `harness.backends`.
+"""Backends by name: the files of this folder that have one, and the entry points of the group `harness.backends`.
 
-An entry point may name an extra of its package in brackets, `module:Class [extra]`: the one that brings the library.
+A file of this folder is a backend if it says `BACKEND = Class`; what it says is read, not run, since importing a
+library takes time and may fail. It may say `PACKAGE = "name"` too: the package that brings the library. An entry point
+may name an extra of its package in brackets, `module:Class [extra]`: the one that brings the library.
 """
 
 from __future__ import annotations
 
+import ast
 import ctypes
 import os
+import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import lru_cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib import import_module
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
+from pathlib import Path
 
 from harness.backends.protocol import Backend
 from harness.errors import InputError
 
 GROUP = "harness.backends"
-OURS = "harness"  # the name of this package where it is installed
+PROGRAM = "harness"
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A backend that is declared, installed or not.
+
+    Parameters
+    ----------
+    load : imports its class
+    command : what brings its library, where that is an extra of its own
+    packages : whose versions its verdicts and times depend on
+    ours : whether it comes with this package
+    """
+
+    load: Callable[[], type[Backend]]
+    command: str | None = None
+    packages: frozenset[str] = frozenset()
+    ours: bool = False
 
 
 class BackendError(InputError):
@@ -33,13 +58,17 @@ def names() -> list[str]:
     return sorted(_declared())
 
 
-def create(name: str, algorithm: str = "native") -> Backend:
+def packages() -> frozenset[str]:
+    """The packages that a measurement depends on: this program's, and those of every declared backend."""
+    return frozenset({PROGRAM}) | _required(PROGRAM).union(*(found.packages for found in _declared().values()))
+
+
+def create(name: str) -> Backend:
     """A new backend, not loaded yet.
 
     Parameters
     ----------
     name : as in `engine.backend`
-    algorithm : given to the backend, unless it is its own (`native`)
 
     Raises
     ------
@@ -51,28 +80,20 @@ def create(name: str, algorithm: str = "native") -> Backend:
         raise InputError(f'there is no backend "{name}"; there are {", ".join(sorted(declared))}')
     try:
         with silence():
-            made = declared[name].load()
-            backend: Backend = made() if algorithm == "native" else made(algorithm)
+            backend = declared[name].load()()
     except ImportError as error:
         raise BackendError(name, _why(declared[name], error)) from error
     return backend
 
 
-def install_command(name: str) -> str | None:
-    """What brings the library of a declared backend, where it is an extra."""
-    entry = _declared()[name]
-    return _command(entry) if _extras(entry) else None
-
-
 def ours(name: str) -> bool:
-    """Whether a declared backend comes with this package."""
-    return _ours(_declared()[name])
+    """Whether a backend comes with this package; a stranger's may do anything to the process that imports it."""
+    return name in _declared() and _declared()[name].ours
 
 
-def is_extra(name: str) -> bool:
-    """Whether a backend is declared as an extra of its package."""
-    entry = _declared().get(name)
-    return entry is not None and bool(_extras(entry))
+def install_command(name: str) -> str | None:
+    """What brings the library of a declared backend, where it is an extra; of others, None."""
+    return _declared()[name].command if name in _declared() else None
 
 
 @contextmanager
@@ -96,34 +117,76 @@ def silence() -> Iterator[None]:
         os.close(nowhere)
 
 
-def _why(entry: EntryPoint, error: ImportError) -> str:
-    return f"not installed; {_command(entry)}" if _extras(entry) else f"{type(error).__name__}: {error}"
+def _why(declared: Declaration, error: ImportError) -> str:
+    return f"not installed; {declared.command}" if declared.command else f"{type(error).__name__}: {error}"
 
 
-def _command(entry: EntryPoint) -> str:
-    package = entry.dist.name if entry.dist else OURS
-    return f"pip install '{package}[{','.join(_extras(entry))}]'"
-
-
-def _extras(entry: EntryPoint) -> list[str]:
-    try:
-        return entry.extras
-    except (AttributeError, AssertionError):  # a value that names no module and no class
-        return []
-
-
-def _ours(entry: EntryPoint) -> bool:
-    return entry.dist is not None and entry.dist.name == OURS
-
-
-def _declared() -> dict[str, EntryPoint]:
+def _declared() -> dict[str, Declaration]:
     return _declared_on(tuple(sys.path))
 
 
 @lru_cache(maxsize=8)
-def _declared_on(path: tuple[str, ...]) -> dict[str, EntryPoint]:
+def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
     """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend.
 
     A name of ours stays ours, whoever declares it besides.
     """
-    return {entry.name: entry for entry in sorted(entry_points(group=GROUP), key=_ours)}
+    pointed = {entry.name: _pointed(entry) for entry in entry_points(group=GROUP)}
+    strangers = {name: found for name, found in pointed.items() if not found.ours}
+    return {**strangers, **_in_this_folder(), **{name: found for name, found in pointed.items() if found.ours}}
+
+
+def _pointed(entry: EntryPoint) -> Declaration:
+    package = entry.dist.name if entry.dist else PROGRAM
+    try:
+        extras = entry.extras
+    except (AttributeError, AssertionError):  # what it points to is no name; loading it says so
+        extras = []
+    command = f"pip install '{package}[{','.join(extras)}]'" if extras else None
+    needed = _required(package, *extras) if package == PROGRAM else _required(package, *extras) | {package}
+    return Declaration(entry.load, command, needed, ours=package == PROGRAM)
+
+
+def _in_this_folder() -> dict[str, Declaration]:
+    """The backends of this folder, each named as its file."""
+    found = {}
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        said = dict(_constants(file))
+        if "BACKEND" in said:
+            package = said.get("PACKAGE")
+            found[file.stem] = Declaration(
+                _loader(file.stem),
+                f"pip install {package}" if package else None,
+                frozenset({package} if package else ()),
+                ours=True,
+            )
+    return found
+
+
+def _loader(module: str) -> Callable[[], type[Backend]]:
+    def load() -> type[Backend]:
+        made: type[Backend] = import_module(f"harness.backends.{module}").BACKEND
+        return made
+
+    return load
+
+
+def _constants(file: Path) -> Iterator[tuple[str, str]]:
+    """The names at the top of a file to which a word or another name is assigned, each with that."""
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            if isinstance(node.value, ast.Constant):
+                yield node.targets[0].id, str(node.value.value)
+            elif isinstance(node.value, ast.Name):
+                yield node.targets[0].id, node.value.id
+
+
+def _required(package: str, *extras: str) -> frozenset[str]:
+    """The packages that a package needs, always or for one of these extras."""
+    try:
+        lines = requires(package) or ()
+    except PackageNotFoundError:
+        return frozenset()
+    wanted = [None, *extras]
+    parts = [(re.match(r"[\w.-]+", line), re.search(r"extra\s*==\s*['\"]([^'\"]+)", line)) for line in lines]
+    return frozenset(name[0] for name, extra in parts if name and (extra[1] if extra else None) in wanted)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from harness.arrays import Floats, Pairs
 from harness.broadphase import cells
 from harness.broadphase.pairs import checked_positions, checked_radii
+from harness.broadphase.scheme import Scheme
 from harness.kernel import kernel
 from harness.scene.box import Box
 
@@ -105,3 +106,12 @@ def unpack(keys: cells.Keys) -> Pairs:
         pairs[k, 0] = keys[k] >> 32
         pairs[k, 1] = keys[k] & 0xFFFFFFFF
     return pairs
+
+
+def _make(radii: Floats, box: Box, size_classes: bool) -> Grid:
+    from harness.broadphase.hierarchical_grid import HierarchicalGrid  # which is a grid itself
+
+    return (HierarchicalGrid if size_classes else Grid)(radii, box)
+
+
+SCHEME = Scheme("a grid of cells", _make, "a level of cells for each factor of three")

@@ -11,7 +11,7 @@ from harness.errors import InputError
 
 if TYPE_CHECKING:
     from harness.experiment.experiment import Experiment, Point
-    from harness.motion.plan import Plan
+    from harness.methods.stages import Plan
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -68,11 +68,9 @@ def _writing(path: Path) -> Iterator[None]:
 
 
 def _facts(experiment: Experiment, metrics: dict[str, float]) -> list[tuple[str, str]]:
-    from harness.measure.metrics import METRICS
     from harness.replay.facts import facts
 
-    counters = {name: value for name, value in metrics.items() if METRICS[name].kind == "counter"}
-    return facts(experiment.points[0].parameters, counters)
+    return facts(experiment.points[0].parameters, metrics)
 
 
 def _open(address: str) -> None:

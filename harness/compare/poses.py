@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from harness.arrays import Floats
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.scene.scene import Scene
 
 
@@ -52,7 +52,7 @@ def flown(scene: Scene, frames: int, dt: float) -> PoseSet:
 
 
 def _frames(scene: Scene, frames: int, dt: float) -> Iterator[Pose]:
-    flight = Flight(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
+    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
     for frame in range(frames + 1):
-        flight.move_to(frame * dt)
-        yield Pose(f"frame {frame}", flight.positions.copy(), flight.quaternions.copy())
+        trajectory.move_to(frame * dt)
+        yield Pose(f"frame {frame}", trajectory.positions.copy(), trajectory.quaternions.copy())

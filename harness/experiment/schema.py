@@ -9,7 +9,14 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from harness.experiment.combinations import ENGINE, MOTION, SCENE, Rule, conflicts
 from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
 from harness.experiment.number import Bytes, Number, Switch, Vector, Whole, holding, wrong
-from harness.vocabulary import Algorithm, Response, Shape
+from harness.vocabulary import (
+    DEFAULT_ALGORITHM,
+    REFERENCE_ALGORITHM,
+    Algorithm,
+    ReferenceAlgorithm,
+    Response,
+    Shape,
+)
 
 Text = Annotated[str, Field(min_length=1)]
 Positive = Annotated[Number, Field(gt=0)]
@@ -108,7 +115,9 @@ class EngineSpec(Declared):
     """How hits are found."""
 
     backend: Text = Field("fcl", description="library that answers geometry questions; see `harness list`")
-    algorithm: Algorithm = Field("brute-force", description="which questions are asked, and when; see `harness list`")
+    algorithm: Algorithm = Field(
+        DEFAULT_ALGORITHM, description="which questions are asked, and when; see `harness list`"
+    )
     tolerance: Positive = Field(1e-6, description="of size; nearer surfaces touch (predictive hulls, meshes)")
     stages: dict[str, Switch] = Field({}, description="stages forced on or off, for an ablation; see `harness plan`")
 
@@ -121,7 +130,9 @@ class EngineSpec(Declared):
 class ReferenceSpec(Declared):
     """What errors are measured against."""
 
-    algorithm: Literal["predictive"] = Field("predictive", description="of the reference run; frames would miss hits")
+    algorithm: ReferenceAlgorithm = Field(
+        REFERENCE_ALGORITHM, description="of the reference run; frames would miss hits"
+    )
     tolerance: Positive = Field(1e-10, description="its tolerance, of size")
 
 

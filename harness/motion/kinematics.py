@@ -16,8 +16,8 @@ from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
 
-class Flight:
-    """Bodies in free flight, moved to any time on demand.
+class Trajectory:
+    """Bodies in free trajectory, moved to any time on demand.
 
     Parameters
     ----------

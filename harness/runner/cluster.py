@@ -21,6 +21,7 @@ from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from harness.backends.registry import packages
 from harness.errors import InputError
 from harness.measure.machine import fingerprint, machine_facts, package_versions
 from harness.runner.executor import Done
@@ -232,7 +233,7 @@ class Outcome:
 
 def identity() -> Identity:
     """Of the process that calls."""
-    return Identity(socket.gethostname(), sources_hash(), package_versions())
+    return Identity(socket.gethostname(), sources_hash(), package_versions(packages()))
 
 
 def run_here(task: Task, mesh: Mesh | None) -> Outcome:

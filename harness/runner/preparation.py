@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from harness.backends.registry import names
-from harness.backends.stages import StageError
 from harness.backends.statement import missing
 from harness.errors import InputError, Problem
 from harness.experiment.experiment import Experiment
 from harness.experiment.load import find_experiments, load
 from harness.experiment.messages import listed, near, shown
 from harness.measure.metrics import METRICS
+from harness.methods.stages import StageError
 from harness.scene.mesh import Mesh
 from harness.scene.mesh_child import open_meshes
 

@@ -17,7 +17,8 @@ from multiprocessing.connection import Connection
 
 from harness.backends import registry
 from harness.backends.statement import ask_strangers_here
-from harness.runner.isolation import adopt_orphans, die_with_parent, run_isolated
+from harness.process_limits import adopt_orphans, die_with_parent
+from harness.runner.isolation import run_isolated
 from harness.runner.task import Task
 from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
+from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.errors import InputError
 from harness.experiment.criterion import Criterion
@@ -178,7 +179,7 @@ def sweep(
     work = work_of(experiments, meshes, database.history, command=command, choice=choice or Choice())
     machine = machine_facts()
     machine["fingerprint"] = fingerprint(machine)
-    number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions())
+    number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions(packages()))
     listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
     summary = Summary(work.schedule.kept, lacking=work.lacking)
     watch.begin(work.schedule.jobs, work.estimate)
@@ -209,7 +210,7 @@ def _keep(database: Database, sweep: int, done: Done) -> None:
     """Put a run, or a control, into the database."""
     job, report = done.job, done.report
     if job.control:
-        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].kind == "clock"}
+        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].clock}
         database.add_control(sweep, job.key, job.repeat, report.status, clocks, done.machine)
         return
     database.add_run(

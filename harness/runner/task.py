@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from harness.experiment.experiment import Point
+from harness.methods.stages import Plan
 from harness.motion.hits import Trace
-from harness.motion.plan import Plan
 from harness.store.recording import Recording
 from harness.vocabulary import Status
 

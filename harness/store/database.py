@@ -164,6 +164,7 @@ class Database:
         stderr: str | None,
         metrics: Mapping[str, tuple[float, str]],
         timing_grade: bool,
+        *,
         started: datetime | None = None,
         plan: Mapping[str, Any] | None = None,
         machine: Mapping[str, Any] | None = None,

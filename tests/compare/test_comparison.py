@@ -78,11 +78,11 @@ def test_a_backend_that_dies_at_a_pose_is_asked_the_others(name, defective):
     scene.bodies.velocities[:] = 0.0
     scene.bodies.positions[0] = [-1.0, 0.0, 0.0]
     scene.bodies.velocities[0] = [0.5, 0.0, 0.0]
-    setting = flown(scene, 4, 0.1)
-    deadly = sum(abs(pose.positions[0, 0]) > 0.9 for pose in setting.poses(scene))
+    pose_set = flown(scene, 4, 0.1)
+    deadly = sum(abs(pose.positions[0, 0]) > 0.9 for pose in pose_set.poses(scene))
     assert deadly == 2
-    found = compare([setting], ["fcl", name], patience=2.0)
-    assert [(failure.backend, failure.call) for failure in found.failures] == [(name, 1), (name, 2)]
+    found = compare([pose_set], ["fcl", name], timeout=2.0)
+    assert [(failure.backend, failure.query_index) for failure in found.failures] == [(name, 1), (name, 2)]
     assert ("SIGSEGV" if name == "crashes" else "no answer within 2 s") in found.failures[0].reason
     assert found.tallies[0].poses == 5 - deadly
     assert not found.passed
@@ -98,8 +98,8 @@ def test_a_mesh_replaced_by_its_hull_is_an_approximation():
 
 def test_an_answer_that_is_none_is_a_failure_at_its_pose():
     scene = random_scene("sphere", 3, 3.0)
-    setting = flown(scene, 0, 1.0)
-    (pose,) = setting.poses(scene)
+    pose_set = flown(scene, 0, 1.0)
+    (pose,) = pose_set.poses(scene)
     with Isolated("fcl", scene) as asked:
         broken = type(pose)("nowhere", np.full((3, 3), np.nan), pose.quaternions)
         assert "not finite" in asked.pairs(broken)

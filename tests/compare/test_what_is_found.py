@@ -7,14 +7,14 @@ import pytest
 
 from harness.cli.main import main
 from harness.compare.comparison import compare, disagreements
-from harness.compare.flight import fly_both
-from harness.compare.hard import hard_poses
+from harness.compare.cross_section import cross_section
+from harness.compare.free_running import run_both
+from harness.compare.hard_poses import hard_poses
 from harness.compare.judge import judge, touches
 from harness.compare.minimise import minimise
 from harness.compare.outcome import Case
 from harness.compare.poses import Pose, PoseSet, flown
-from harness.compare.section import section
-from harness.compare.tally import Approximation, GapAxis, decade_of
+from harness.compare.tally import Approximation, GapHistogram, decade_of
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from harness.store import tables
@@ -37,10 +37,10 @@ def at_rest(scene):
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 def test_the_short_verdict_is_that_of_the_judge(shape):
-    for setting in list(hard_poses(shape, cube_mesh(), 31))[::3]:
-        for pose in setting.poses(setting.scene):
-            truth = judge(setting.scene, 0, 1, pose.positions, pose.quaternions)
-            assert touches(setting.scene, 0, 1, pose.positions, pose.quaternions) == truth.touching
+    for pose_set in list(hard_poses(shape, cube_mesh(), 31))[::3]:
+        for pose in pose_set.poses(pose_set.scene):
+            truth = judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions)
+            assert touches(pose_set.scene, 0, 1, pose.positions, pose.quaternions) == truth.touching
 
 
 def test_two_that_are_wrong_together_are_found_by_the_judge(defective):
@@ -72,7 +72,7 @@ def test_a_hull_for_a_mesh_is_measured_in_false_hits_and_misses():
 
 def test_gaps_are_counted_by_their_decade():
     assert [decade_of(gap) for gap in (0.0, 5e-17, 2e-15, 1e-15, -3e-3, 0.5, -7.0)] == [0, 0, 2, 2, -14, 16, -16]
-    axis, other = GapAxis(("a", "b"), "hull"), GapAxis(("a", "b"), "hull")
+    axis, other = GapHistogram(("a", "b"), "hull"), GapHistogram(("a", "b"), "hull")
     axis.count("real", 1e-3)
     other.count("real", 2e-3)
     other.count("undecided", -1e-12)
@@ -83,11 +83,11 @@ def test_gaps_are_counted_by_their_decade():
 def test_flights_of_equal_backends_never_part_and_those_of_a_blind_one_do_at_its_first_miss(defective):
     scene = random_scene("sphere", 12, 4.0, seed=3)
     how = {"frames": 60, "dt": 1 / 30, "response": "elastic"}
-    (same,) = fly_both(scene, ("fcl", "pybullet"), **how).flights
+    (same,) = run_both(scene, ("fcl", "pybullet"), **how).flights
     assert same.diverged is None
     assert same.shared_hits > 0
     assert same.afterwards[0].pair_hits_per_second == same.afterwards[1].pair_hits_per_second > 0
-    (other,) = fly_both(scene, ("fcl", defective("blind")), **how).flights
+    (other,) = run_both(scene, ("fcl", defective("blind")), **how).flights
     assert 0 < other.diverged <= 2.0
     seeing, blind = other.afterwards
     assert seeing.pair_hits_per_second > 0 == blind.pair_hits_per_second
@@ -97,8 +97,8 @@ def test_flights_of_equal_backends_never_part_and_those_of_a_blind_one_do_at_its
 def test_a_flight_that_crashes_is_a_failure_at_its_frame(defective):
     scene = random_scene("sphere", 4, 3.0, seed=2)
     scene.bodies.positions[0] = [-1.0, 0.0, 0.0]
-    found = fly_both(scene, ("fcl", defective("crashes")), frames=3, dt=0.01, response="reflect")
-    assert [(failure.backend, failure.call) for failure in found.failures] == [("crashes", 1)]
+    found = run_both(scene, ("fcl", defective("crashes")), frames=3, dt=0.01, response="reflect")
+    assert [(failure.backend, failure.query_index) for failure in found.failures] == [("crashes", 1)]
     assert "SIGSEGV" in found.failures[0].reason
 
 
@@ -127,7 +127,7 @@ def test_a_section_cuts_both_bodies_where_they_meet():
     scene = Scene("hull", cube_mesh(), make_bodies([[0, 0, 0], [0.7, 0, 0]]), Box(np.full(3, 2.0)))
     pose = Pose("here", scene.bodies.positions, scene.bodies.quaternions)
     case = Case(("a", "b"), "b", (0, 1), judge(scene, 0, 1, pose.positions, pose.quaternions), scene, pose, 1)
-    first, second = (np.array(cut) for cut in section(case))
+    first, second = (np.array(cut) for cut in cross_section(case))
     half = 1 / np.sqrt(12)
     assert np.abs(first[:, [0, 2]] + 0.35).max() == pytest.approx(half, abs=1e-4)
     assert np.abs(second[:, [0, 2]] - 0.35).max() == pytest.approx(half, abs=1e-4)

@@ -88,10 +88,10 @@ def test_a_reference_is_made_once_for_all_points_of_a_sweep(monkeypatch):
 
     def counting(*arguments):
         made.append(arguments)
-        return contacts_of(*arguments)
+        return scene_contacts(*arguments)
 
-    contacts_of = accuracy.contacts_of
-    monkeypatch.setattr(accuracy, "contacts_of", counting)
+    scene_contacts = accuracy.scene_contacts
+    monkeypatch.setattr(accuracy, "scene_contacts", counting)
     for algorithm in ("grid", "tree"):
         for dt in (0.1, 0.01):
             metrics(algorithm=algorithm, dt=dt)

@@ -67,7 +67,7 @@ def small(tmp_path, monkeypatch):
 
 def counted(database):
     """Everything exact that a sweep has measured, by experiment, point and repeat."""
-    exact = [name for name, metric in METRICS.items() if metric.kind in ("counter", "error")]
+    exact = [name for name, metric in METRICS.items() if not metric.noisy]
     return {
         (run.experiment, run.point, run.repeat): {name: run.metrics[name] for name in exact if name in run.metrics}
         for run in tables.run_records(database)

@@ -38,13 +38,14 @@ class Form:
     Parameters
     ----------
     scene : Scene of shape `hull` or `mesh`
+    surface : whether the surface is to be searched where hulls touch; by default where the scene needs it
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, surface: bool | None = None) -> None:
         if scene.mesh is None or scene.shape == "sphere":
             raise ValueError("a sphere has no surface to search")
         mesh, hull = scene.mesh, scene.mesh.hull
-        self.concave = needs_its_surface(scene)
+        self.concave = needs_its_surface(scene) if surface is None else surface
         faces = mesh.faces if self.concave else mesh.faces[:1]
         tree = triangle_tree(mesh.vertices, faces)
         self.shape = MeshShape(support_map(hull.vertices), tree, 0.5)
