@@ -299,6 +299,10 @@ def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, outpu
         isolate(output)
         if output is not None:
             os.close(output)
+        # what prints through Python may have been led elsewhere in the parent, as in a notebook
+        sys.stdout, sys.stderr = (
+            os.fdopen(stream, "w", 1, encoding="utf-8", errors="backslashreplace", closefd=False) for stream in (1, 2)
+        )
         if os.getppid() == parent:  # else it has ended already
             main(Channel(end))
     except BaseException:

@@ -11,7 +11,14 @@ from harness.vocabulary import ALGORITHMS
 
 PACKAGE = Path(__file__).parents[1] / "harness"
 BASE = {
-    *("arrays", "child_process", "errors", "kernel", "kernel_cache", "modules", "process_limits", "python_child"),
+    "arrays",
+    "child_process",
+    "errors",
+    "kernel",
+    "kernel_cache",
+    "modules",
+    "process_limits",
+    "python_child",
     "vocabulary",
 }
 KERNELS = {"scene", "narrowphase", "broadphase"}

@@ -11,7 +11,7 @@ from harness.backends.fcl import Fcl
 from harness.backends.protocol import Backend
 from harness.cli.main import COMMANDS, main
 from harness.experiment.load import load_text
-from harness.runner.setting import build_scene
+from harness.runner.scene_of_point import build_scene
 
 README = Path(__file__).parents[1] / "README.md"
 

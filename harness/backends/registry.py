@@ -27,6 +27,14 @@ GROUP = "harness.backends"
 PROGRAM = "harness"
 
 
+class BackendError(InputError):
+    """A backend cannot be used; `why` says why, without its name."""
+
+    def __init__(self, name: str, why: str) -> None:
+        super().__init__(f'backend "{name}" cannot be used: {why}')
+        self.why = why
+
+
 @dataclass(frozen=True)
 class Declaration:
     """A backend that is declared, installed or not.
@@ -36,21 +44,13 @@ class Declaration:
     load : imports its class
     command : what brings its library, where that is an extra of its own
     packages : whose versions its verdicts and times depend on
-    ours : whether it comes with this package
+    ours : whether it comes with this program
     """
 
     load: Callable[[], type[Backend]]
     command: str | None = None
     packages: frozenset[str] = frozenset()
-    ours: bool = False
-
-
-class BackendError(InputError):
-    """A backend cannot be used; `why` says why, without its name."""
-
-    def __init__(self, name: str, why: str) -> None:
-        super().__init__(f'backend "{name}" cannot be used: {why}')
-        self.why = why
+    ours: bool = True
 
 
 def names() -> list[str]:
@@ -86,14 +86,19 @@ def create(name: str) -> Backend:
     return backend
 
 
-def ours(name: str) -> bool:
-    """Whether a backend comes with this package; a stranger's may do anything to the process that imports it."""
-    return name in _declared() and _declared()[name].ours
-
-
 def install_command(name: str) -> str | None:
-    """What brings the library of a declared backend, where it is an extra; of others, None."""
-    return _declared()[name].command if name in _declared() else None
+    """What brings the library of a declared backend, where it is an extra."""
+    return _declared()[name].command
+
+
+def ours(name: str) -> bool:
+    """Whether a declared backend comes with this program."""
+    return _declared()[name].ours
+
+
+def is_extra(name: str) -> bool:
+    """Whether a backend is declared as an extra of its package."""
+    return name in _declared() and _declared()[name].command is not None
 
 
 @contextmanager
@@ -131,20 +136,25 @@ def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
 
     A name of ours stays ours, whoever declares it besides.
     """
-    pointed = {entry.name: _pointed(entry) for entry in entry_points(group=GROUP)}
-    strangers = {name: found for name, found in pointed.items() if not found.ours}
-    return {**strangers, **_in_this_folder(), **{name: found for name, found in pointed.items() if found.ours}}
+    pointed = [(entry.name, _pointed(entry)) for entry in entry_points(group=GROUP)]
+    theirs = {name: found for name, found in pointed if not found.ours}
+    return {**theirs, **_in_this_folder(), **{name: found for name, found in pointed if found.ours}}
 
 
 def _pointed(entry: EntryPoint) -> Declaration:
-    package = entry.dist.name if entry.dist else PROGRAM
+    package = entry.dist.name if entry.dist else ""
+    extras = _extras(entry)
+    command = f"pip install '{package or PROGRAM}[{','.join(extras)}]'" if extras else None
+    needed = _required(package, *extras) if package else frozenset[str]()
+    ours = package == PROGRAM
+    return Declaration(entry.load, command, needed if ours or not package else needed | {package}, ours)
+
+
+def _extras(entry: EntryPoint) -> list[str]:
     try:
-        extras = entry.extras
-    except (AttributeError, AssertionError):  # what it points to is no name; loading it says so
-        extras = []
-    command = f"pip install '{package}[{','.join(extras)}]'" if extras else None
-    needed = _required(package, *extras) if package == PROGRAM else _required(package, *extras) | {package}
-    return Declaration(entry.load, command, needed, ours=package == PROGRAM)
+        return entry.extras
+    except (AttributeError, AssertionError):  # a value that names no module and no class
+        return []
 
 
 def _in_this_folder() -> dict[str, Declaration]:
@@ -158,7 +168,6 @@ def _in_this_folder() -> dict[str, Declaration]:
                 _loader(file.stem),
                 f"pip install {package}" if package else None,
                 frozenset({package} if package else ()),
-                ours=True,
             )
     return found
 

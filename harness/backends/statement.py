@@ -62,7 +62,7 @@ def missing(name: str) -> str | None:
 
     Of other backends nothing is said: their runs will say it.
     """
-    if registry.install_command(name) is None:
+    if not registry.is_extra(name):
         return None
     said = statement(name, NEEDED)
     return None if said.installed else f'backend "{name}" cannot be used: {said.missing}'

@@ -188,7 +188,7 @@ def _print(found: Comparison) -> None:
 def _sentence(case: Case) -> str:
     truth = case.judgement
     state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
-    verb = "are both" if " and " in case.wrong else "is"
+    verb = "are both" if case.both_wrong else "is"
     i, j = case.bodies
     return (
         f"{case.wrong} {verb} wrong: at {case.pose.name} (call {case.query_index}) bodies {i} and {j} {state}, "

@@ -27,8 +27,8 @@ from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
+from harness.runner.scene_of_point import SceneSizeError, build_scene
 from harness.runner.servers import mesh_of
-from harness.runner.setting import SceneSizeError, build_scene
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene

@@ -20,8 +20,8 @@ from harness.experiment.load import load_text
 from harness.replay.document import document
 from harness.replay.live import LiveServer
 from harness.replay.page import Setting, live_page
+from harness.runner.scene_of_point import derived_parameters
 from harness.runner.servers import Servers, mesh_of, task_of
-from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
 from harness.vocabulary import ALGORITHMS

@@ -27,8 +27,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     from harness.runner.execute import plan_of
     from harness.runner.preparation import prepare
+    from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import mesh_of
-    from harness.runner.setting import SceneSizeError, build_scene
     from harness.scene.launch import PlacementError
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))

@@ -23,7 +23,7 @@ _DRAW_EVERY = 0.2  # s
 
 
 class Progress:
-    """Watches a sweep (see `harness.runner.sweep.Watcher`). A context.
+    """Watches a sweep (see `harness.runner.sweep.ProgressListener`). A context.
 
     Parameters
     ----------

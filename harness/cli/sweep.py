@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from harness.experiment.experiment import Experiment
     from harness.runner.executor import Executor
-    from harness.runner.schedule import Choice
+    from harness.runner.schedule import RunSelection
     from harness.runner.sweep import Summary
     from harness.scene.mesh import Mesh
     from harness.store.database import Database
@@ -70,20 +70,26 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.runner.sweep import sweep
     from harness.store.database import Database
 
-    choice = _choice(arguments)
+    selection = _selection(arguments)
     experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
     chosen = [experiment for experiment in experiments if arguments.long or experiment.measure.tier == "default"]
     for left in [experiment.name for experiment in experiments if experiment not in chosen]:
         print(f"{left}: left out, since it is `tier: long`; --long runs it", file=sys.stderr)
     command = shlex.join(["harness", *sys.argv[1:]])
     if arguments.dry_run:
-        _foretell(chosen, meshes, arguments, command, choice)
+        _foretell(chosen, meshes, arguments, command, selection)
         return 0
     progress = Progress("quiet" if arguments.quiet else "verbose" if arguments.verbose else "normal")
     with Database.open(arguments.db) as database, progress:
         try:
             summary = sweep(
-                chosen, meshes, database, command=command, watch=progress, executor=_executor(arguments), choice=choice
+                chosen,
+                meshes,
+                database,
+                command=command,
+                progress=progress,
+                executor=_executor(arguments),
+                selection=selection,
             )
         except KeyboardInterrupt as interruption:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
@@ -95,11 +101,11 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if summary.failed else 0
 
 
-def _choice(arguments: argparse.Namespace) -> Choice:
+def _selection(arguments: argparse.Namespace) -> RunSelection:
     from harness.experiment.document import read_value
     from harness.experiment.leaves import DERIVED, LEAVES
     from harness.experiment.messages import near, shown
-    from harness.runner.schedule import Choice
+    from harness.runner.schedule import RunSelection
 
     only: dict[str, list[Any]] = {}
     problems = []
@@ -116,7 +122,7 @@ def _choice(arguments: argparse.Namespace) -> Choice:
                 problems += [Problem(f"--only {text}: {problem.message}") for problem in error.problems]
     if problems:
         raise InputError(problems)
-    return Choice(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
+    return RunSelection(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
 
 
 def _executor(arguments: argparse.Namespace) -> Executor | None:
@@ -190,7 +196,7 @@ def _foretell(
     meshes: Mapping[Path, Mesh],
     arguments: argparse.Namespace,
     command: str,
-    choice: Choice,
+    selection: RunSelection,
 ) -> None:
     """What a sweep would do. Nothing is written, and no database is made."""
     import os
@@ -202,7 +208,7 @@ def _foretell(
 
     there = os.path.exists(arguments.db) and os.path.getsize(arguments.db) > 0
     with history_of(arguments.db) if there else nullcontext() as history:
-        work = work_of(experiments, meshes, history, command=command.replace(" --dry-run", ""), choice=choice)
+        work = work_of(experiments, meshes, history, command=command.replace(" --dry-run", ""), selection=selection)
     jobs, kept = work.schedule
     rows = []
     for experiment in experiments:

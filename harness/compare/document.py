@@ -1,4 +1,4 @@
-"""What a comparison has found, as JSON holds it: for `--json`, and for the database."""
+"""A comparison as JSON, for `--json` and for the database."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from harness.compare.tally import Approximation, Counts, GapHistogram
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """A case, and what was made of it.
+    """A case, and the smaller one that was made of it.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def document(found: Comparison, rows: list[Reduced], files: dict[int, str]) -> d
 
 
 def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
-    """A wrong verdict; `depends_on_order` tells one that a single question does not show, and `frame` where it was."""
+    """A wrong verdict; `depends_on_order` marks one that a single query of the same pose does not show."""
     case = row.case
     where = {"pose": case.pose.name, "call": case.query_index, "touching": case.judgement.touching}
     return {

@@ -64,8 +64,15 @@ def compare_runs(names: tuple[str, str], scene: Scene, response: str, traces: tu
         for name, trace in zip(names, traces, strict=True)
     )
     return FreeRunPair(
-        names, scene.shape, len(scene.bodies), response, duration, diverged, shared, (first, second)
-    )  # fmt: skip
+        names,
+        scene.shape,
+        bodies=len(scene.bodies),
+        response=response,
+        duration=duration,
+        diverged=diverged,
+        shared_hits=shared,
+        afterwards=(first, second),
+    )
 
 
 def _events(trace: Trace) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:

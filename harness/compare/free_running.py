@@ -56,7 +56,7 @@ def run_both(
 
 
 class _FailedError(Exception):
-    """The backend gave no answer; says why."""
+    """The backend gave no answer, and why."""
 
 
 class _IsolatedMethod(SteppedMethod):

@@ -30,7 +30,7 @@ _LOADING = 10
 
 @dataclass(frozen=True)
 class Facts:
-    """What a loaded backend says of itself for the shape of the scene.
+    """What a loaded backend declares of itself for the shape of the scene.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Facts:
 
 
 class UnusableError(Exception):
-    """The backend cannot take the scene at all; says why."""
+    """The backend cannot take the scene at all, and why."""
 
 
 class Isolated:
@@ -55,13 +55,13 @@ class Isolated:
 
     Parameters
     ----------
-    name : of what answers, which `_create` makes of it; nothing else looks into it
+    name : of what answers; `_create` makes of it what is asked, and nothing else looks into it
     scene : Scene
     timeout : s for an answer
 
     Attributes
     ----------
-    facts : what it says of itself, once entered
+    facts : what it declares of itself, once entered
 
     Raises
     ------
@@ -125,7 +125,7 @@ def _create(name: str, shape: Shape) -> Backend:
 
 
 def _serve(name: str, scene: Scene, channel: Channel) -> None:
-    """The process of the backend: load, say what it is, then answer until the other side closes."""
+    """The process of the backend: load, send the facts, then answer until the parent closes its end."""
     try:
         backend = _create(name, scene.shape)
         if scene.shape not in backend.shapes:

@@ -33,6 +33,11 @@ class Case:
     pose: Pose
     query_index: int
 
+    @property
+    def both_wrong(self) -> bool:
+        """Whether both agree on what is wrong."""
+        return self.wrong not in self.backends
+
 
 @dataclass(frozen=True)
 class Failure:

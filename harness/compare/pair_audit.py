@@ -38,7 +38,7 @@ class PairAudit:
     ----------
     names : of both
     scene : with the hulls that both are held against
-    facts : what each says of itself
+    facts : what each declares of itself
     flown : whether the bodies fly; else they are put where verdicts are hard
 
     Attributes

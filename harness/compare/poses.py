@@ -28,7 +28,7 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class PoseSet:
-    """A scene and the poses at which it is looked at.
+    """A scene and the poses at which backends are asked about it.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class PoseSet:
 def flown(scene: Scene, frames: int, dt: float) -> PoseSet:
     """Bodies that fly through each other, from the start to frame `frames`, `dt` (s) apart.
 
-    With a response no body would ever be seen to overlap another.
+    With a response no two bodies would ever overlap at a frame.
     """
     return PoseSet(scene, lambda held: tuple(_frames(held, frames, dt)))
 

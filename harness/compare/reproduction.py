@@ -51,7 +51,7 @@ def text_of(case: Case, mesh: str | None) -> str:
     declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": bodies}
     if mesh is not None and scene.shape != "sphere":
         declared["mesh"] = mesh
-    verb = "are" if " and " in case.wrong else "is"
+    verb = "are" if case.both_wrong else "is"
     state = "overlap" if case.judgement.touching else "do not touch"
     lines = {
         "title": f"{case.wrong} {verb} wrong about bodies {i} and {j}",

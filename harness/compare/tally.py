@@ -54,8 +54,8 @@ class Approximation(Counts):
     ----------
     backend : the one that replaces it
     verdicts : pairs of bodies asked about
-    touching : pairs that touch: both say so, or where they differ the judge
-    reported : pairs that the backend says touch
+    touching : pairs that touch: as both report, or where they differ as the judge finds
+    reported : pairs that the backend reports
     false_hits : of those reported, pairs that do not touch
     contained : of the false hits, pairs of which one surface lies inside the other
     misses : of those that touch, pairs not reported

@@ -1,6 +1,6 @@
 """When two motions that began alike diverge: the first event of any body that differs.
 
-Events of different bodies have no order among them: one frame shows several at once, and says nothing of which came
+Events of different bodies have no order among them: one frame shows several at once, and not which came
 first. So each body's own history is compared, the partners and walls that it meets one after another. Walls that a body
 meets one right after another on different axes may change places: mirroring x and then y is mirroring y and then x.
 """
@@ -35,7 +35,7 @@ def first_divergence(bodies: int, one: Events, other: Events) -> float:
 
 
 class _Histories(NamedTuple):
-    """Of each body in turn, whom it meets (-1 - wall for walls) and when (s); `starts` says where each body's begin."""
+    """Of each body in turn, whom it meets (-1 - wall for walls) and when (s); `starts` has where each body's begin."""
 
     starts: Ints
     met: Ints

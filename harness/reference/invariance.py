@@ -1,8 +1,8 @@
-"""What a motion ought not to care about: the direction of time, names, left and right, units.
+"""Whether a motion is invariant, as the laws are: under reversal of time, numbering, mirroring, and units.
 
-Each check flies the scene once more, changed in a way that the laws of motion do not notice, and tells how far the
-bodies end from where they should. A check costs a flight, so that none is made unless somebody asks for its number.
-The changes are exact in floating point (signs, an order, powers of two): what comes out is the method's own doing.
+Each check runs the scene once more, changed in a way that leaves the laws of motion as they are, and measures how far
+the bodies end from where they should. A check costs a run, so that only those are made whose metrics are asked for. The
+changes are exact in floating point (signs, an order, powers of two): what is measured is the method's own error.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def _ordered(bodies: Bodies, order: Ints) -> Bodies:
 
 
 def _mirrored(mesh: Mesh, flip: Floats) -> Mesh:
-    """The mesh seen in the mirror; faces run the other way round, so that outside stays outside."""
+    """The mirror image of the mesh; its faces run the other way round, so that outside stays outside."""
     hull = hull_of(mesh.hull.vertices * flip, mesh.hull.faces[:, ::-1])
     surface = hull_of(mesh.vertices * flip, mesh.faces[:, ::-1])
     return replace(mesh, vertices=surface.vertices, faces=surface.faces, hull=hull, digest=f"mirrored {mesh.digest}")

@@ -10,7 +10,7 @@ matched one to one so that
 
 A hit may come before the onset: where the method sees a larger shape than the reference, or touches at a tolerance. A
 contact without a hit is missed, a hit without a contact extra. So a contact between two frames is missed, two contacts
-that a frame-by-frame look takes for one are one match and one miss, and a contact reported twice is one match and one
+that frames cannot tell apart are one match and one miss, and a contact reported twice is one match and one
 extra. What touches at time 0 has no onset: it may be reported or not, and counts neither way.
 """
 
@@ -73,8 +73,8 @@ def match(contacts: Contacts, times: Floats, pairs: Pairs, until: float) -> Matc
     >>> found.hits, found.missed, found.extra, found.errors.tolist()
     (2, 1, 0, [0.25])
     """
-    seen = times <= contacts.duration * (1.0 + ROUNDING)
-    times, pairs = times[seen], pairs[seen]
+    within = times <= contacts.duration * (1.0 + ROUNDING)
+    times, pairs = times[within], pairs[within]
     order = np.lexsort((times, pairs[:, 1], pairs[:, 0]))
     times, pairs = times[order], pairs[order]
     slack = ROUNDING * contacts.duration

@@ -1,7 +1,7 @@
 """How far the bodies of a run with response are off, up to the first hit that differs from the reference.
 
-Chaos makes of the smallest difference another motion, the reference included. How far that one can be relied on is told
-by its twin: the same motion in another unit of length, which rounds every number otherwise.
+Chaos makes of the smallest difference another motion, and the reference is rounded too. How long it holds is shown by
+its twin: the same motion in another unit of length, in which every number is rounded otherwise.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from harness.scene.box import Box
 from harness.scene.scene import Scene
 from harness.vocabulary import Response
 
-# Times at which the positions of two motions are compared, and positions that are held for it in all.
-LOOKS, MOST_POSITIONS = 256, 2**21
+# Times at which the positions of two motions are compared, and positions that may be held for it in all.
+MOST_TIMES, MOST_POSITIONS = 256, 2**21
 # The other unit of length; no power of two, so that every number is rounded otherwise.
 UNIT = math.pi / 3.0
 
@@ -70,8 +70,8 @@ def position_errors(
         "divergence_time": min(duration, first_divergence(len(bodies), run, exact)),
         "reference_divergence_time": min(duration, first_divergence(len(bodies), twin, exact)),
     }
-    looks = min(LOOKS, MOST_POSITIONS // max(1, len(bodies)))
-    times = duration * np.arange(1, looks + 1) / looks
+    count = min(MOST_TIMES, MOST_POSITIONS // max(1, len(bodies)))
+    times = duration * np.arange(1, count + 1) / count
     times = times[(times < min(metrics.values())) & (times <= flown.time)]
     if len(times) and len(bodies):
         ours, theirs, again = (

@@ -22,7 +22,7 @@ from harness.reference.folded_paths import FoldedPaths, fold_time, folded_paths,
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
-# Straight pieces of all pairs together up to which every pair is looked at over the whole duration (about a second).
+# Straight pieces of all pairs together up to which every pair is searched over the whole duration (about a second).
 FEW_PIECES = 5e6
 # Ends of two pieces of one encounter that are no further apart, in ulps of the duration, are one moment.
 SAME_MOMENT = 64.0
@@ -56,7 +56,7 @@ def sphere_contacts(
     duration : float
         s
     windows : int
-        Into how many parts the duration is cut; in each, only pairs near one another are looked at. Chosen where left
+        Into how many parts the duration is cut; in each, only pairs near one another are searched. Chosen where left
         out; the answer is the same.
     margin : float
         By how much of its radius each sphere is taken larger where it meets another, though not where it meets a wall.
@@ -197,6 +197,9 @@ def passage(gap: Floats, velocity: Floats, reach: float) -> tuple[float, float]:
     ----------
     gap, velocity : (3,) float arrays, m and m/s
     reach : m
+
+    >>> passage(np.array([3.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 1.0)
+    (2.0, 4.0)
     """
     b = gap[0] * velocity[0] + gap[1] * velocity[1] + gap[2] * velocity[2]
     vv = velocity[0] ** 2 + velocity[1] ** 2 + velocity[2] ** 2

@@ -93,7 +93,7 @@ class Overview:
 
     @cached_property
     def claims(self) -> list[tuple[ExperimentPage, VerdictRow]]:
-        """Every claim that was judged, with its experiment; those of cases say how far a method falls short there."""
+        """Every claim, with the experiment that makes it; those of cases say how far a method falls short there."""
         return [(card.page, row) for card in self.cards for row in card.page.record.claims if is_judged(row)]
 
     @property

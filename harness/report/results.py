@@ -10,13 +10,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import pandas as pd
-from markupsafe import Markup
 
 from harness.report.accuracy.experiment import ExperimentAccuracy, accuracy_of
 from harness.report.backends.comparisons import Comparisons
 from harness.report.backends.correctness import correctness, newest
 from harness.report.experiment import ExperimentPage
-from harness.report.missing import missing_runs
 from harness.report.stability.matrix import Matrix, matrix
 from harness.report.sweeps.difference import Difference
 from harness.report.sweeps.page import newest_difference
@@ -80,11 +78,6 @@ class Results:
     def difference(self) -> Difference | None:
         """How the newest sweep differs from the one before."""
         return newest_difference(self.database)
-
-    @cached_property
-    def missing(self) -> Markup | None:
-        """What is still to be measured, in a sentence; None where all is."""
-        return missing_runs(self.records, self.runs)
 
     @cached_property
     def machines(self) -> Mapping[str, Mapping[str, Any]]:

@@ -56,6 +56,7 @@ def write_report(database: str | Path, out: str | Path) -> Path:
 def render(database: str | Path) -> Iterator[tuple[str, str]]:
     """Every file of the report: (path below the report, text)."""
     results = Results(database)
+    missing = missing_runs(results.records, results.runs)
     overview, further = Overview(results), pages_of(results)
     written = sections_of("overview", overview) if results.pages else []
     links = navigation([found.section for found in written], [page for page, _ in further])
@@ -70,7 +71,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
             overview=overview,
             sections=written,
             footer=_footer(results.records),
-            missing=results.missing,
+            missing=missing,
         ),
     )
     for other, content in further:
@@ -81,7 +82,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
                 title=f"{other.title} · harness",
                 navigation=links.on(other.file),
                 footer=_footer(content.records),
-                missing=results.missing,
+                missing=missing,
                 **content.values,
             ),
         )

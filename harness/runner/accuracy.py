@@ -21,7 +21,7 @@ from harness.reference.scene_contacts import onset_error, scene_contacts
 from harness.runner.key import sources_hash
 from harness.runner.point import is_stepped
 from harness.runner.reference_cache import kept
-from harness.runner.setting import build_scene
+from harness.runner.scene_of_point import build_scene
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 

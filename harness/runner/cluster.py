@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from harness.backends.registry import packages
 from harness.errors import InputError
 from harness.measure.machine import fingerprint, machine_facts, package_versions
-from harness.runner.executor import Done
+from harness.runner.executor import FinishedJob
 from harness.runner.key import sources_hash
 from harness.runner.schedule import Job
 from harness.runner.servers import Servers, task_of
@@ -86,7 +86,9 @@ class Cluster:
                 self._client.run(stop_here, on_error="ignore")
         self._open.close()
 
-    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
+    def run(
+        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
+    ) -> Iterator[FinishedJob]:
         """See `harness.runner.executor.Executor`; `before` is called when a job is handed out."""
         waiting = deque(jobs)
         contents: dict[str, Future] = {}
@@ -115,16 +117,16 @@ class Cluster:
         except TimeoutError:
             return []
 
-    def _done(self, job: Job, future: Future) -> Done:
+    def _done(self, job: Job, future: Future) -> FinishedJob:
         from distributed import KilledWorker
 
         try:
             outcome: Outcome = future.result()
         except KilledWorker as error:
             now, report = datetime.now(timezone.utc), Report("crashed", f"every worker that tried it died: {error}")
-            return Done(job, report, timing_grade=False, started=now)
+            return FinishedJob(job, report, timing_grade=False, started=now)
         alone = self._slots[outcome.host] == 1
-        return Done(job, outcome.report, timing_grade=alone, started=outcome.started, machine=outcome.machine)
+        return FinishedJob(job, outcome.report, timing_grade=alone, started=outcome.started, machine=outcome.machine)
 
     def _look(self) -> int:
         """How many slots there are now; workers that have joined are checked first.

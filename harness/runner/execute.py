@@ -22,7 +22,7 @@ from harness.runner import accuracy
 from harness.runner.point import is_stepped, law_of, method_of_point
 from harness.runner.recording import recording_of
 from harness.runner.repetition import fly_long_enough
-from harness.runner.setting import build_scene
+from harness.runner.scene_of_point import build_scene
 from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene

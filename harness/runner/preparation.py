@@ -100,8 +100,8 @@ def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Pro
     if not forcing:
         return
     from harness.runner.execute import plan_of  # half a second, which most experiments need not spend
+    from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import mesh_of
-    from harness.runner.setting import SceneSizeError, build_scene
     from harness.scene.launch import PlacementError
 
     refused: set[tuple[str, str]] = set()

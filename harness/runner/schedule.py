@@ -1,8 +1,8 @@
 """Which runs a sweep has to do, and in what order.
 
-Blocks of one repeat of every point, each in random order: what drifts on the machine then meets all points alike. Where
-methods are compared, each block holds a control as well: one of its runs once more. Two equal things come apart by as
-much as the machine makes them, and no two others are told apart by less.
+Blocks of one repeat of every point, each in random order, so that a drift of the machine affects all points alike.
+Where methods are compared, each block holds a control as well: one of its runs once more. How far two equal runs differ
+is the noise of the machine, and no smaller difference of two methods is reported.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which runs are wanted.
+class RunSelection:
+    """Which runs a sweep is to do.
 
     Parameters
     ----------
@@ -109,9 +109,9 @@ def schedule(
 
 
 def _controlled_point(experiment: Experiment, points: Sequence[Point], repeat: int) -> Point | None:
-    """The point whose run of this repeat is done twice: another each time, spread evenly over the experiment.
+    """The point whose run of this repeat is done twice: another for each repeat, at equal steps over the experiment.
 
-    None where nothing is to be told apart: by one method, or with too few repeats for an interval.
+    None where no methods are compared, or with too few repeats for an interval.
     """
     repeats = experiment.measure.repeats
     if not points or repeats < FEWEST_FOR_INTERVAL or not set(experiment.swept).intersection(METHOD_LEAVES):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from harness.scene.hull import Hull
 
+Index = TypeVar("Index", bound=np.integer[Any])
 # How far inside its hull a vertex of a convex mesh may lie, of the mesh's diameter.
 ON_HULL = 1e-9
 
@@ -45,8 +47,7 @@ def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
 
     Faces that name a vertex twice have no edges and are passed over.
     """
-    proper = faces[_proper(faces)]
-    edges, first, uses = _edges(proper)
+    edges, first, uses = _edges(proper(faces))
     forward = np.bincount(edges, weights=first, minlength=len(uses))
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(vertices, vertices))
@@ -71,7 +72,7 @@ def is_convex(vertices: NDArray[np.float64], faces: NDArray[np.int32], hull: Hul
     faces : (f, 3) int array
     hull : Hull of the vertices
     """
-    faces = faces[_proper(faces)]
+    faces = proper(faces)
     about = topology(faces, len(vertices))
     if not about.watertight or about.pieces != 1 or len(vertices) - about.edges + len(faces) != 2:
         return False
@@ -111,9 +112,10 @@ def volume(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
     return float(np.einsum("ij,ij->", np.cross(a, b), c) / 6)
 
 
-def _proper(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Which faces have three different vertices."""
-    return np.asarray((faces != np.roll(faces, 1, axis=1)).all(axis=1))
+def proper(faces: NDArray[Index]) -> NDArray[Index]:
+    """The faces that have three different vertices."""
+    distinct: NDArray[np.bool_] = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return faces[distinct]
 
 
 def _edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64]]:

@@ -10,8 +10,8 @@ from harness.measure.verdicts import judge
 from harness.runner.execute import execute
 from harness.runner.key import point_key
 from harness.runner.preparation import prepare
+from harness.runner.scene_of_point import derived_parameters
 from harness.runner.servers import asked_of, mesh_of
-from harness.runner.setting import derived_parameters
 from harness.scene.launch import PlacementError
 from harness.store.records import RunRecord
 from harness.store.tables import run_table

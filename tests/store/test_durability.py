@@ -50,7 +50,7 @@ def start(path: Path, statement: int = 0) -> subprocess.Popen[str]:
 
 
 def whole_runs(path: Path) -> int:
-    """Runs in the file, after a check that it is sound and that each of them is whole."""
+    """Runs in the file, after a check that it is undamaged and that each of them is whole."""
     records = tables.run_records(path)
     raw = sqlite3.connect(path)
     assert raw.execute("PRAGMA integrity_check").fetchone() == ("ok",)

@@ -116,7 +116,7 @@ def is_case(page: ExperimentPage) -> bool:
 
 
 def cases_of(page: ExperimentPage) -> list[Case]:
-    """The cases that an experiment makes: one, or one a shape; none before it was judged."""
+    """The cases that an experiment makes: one, or one a shape."""
     if page.runs.empty or not is_complete(page.record):
         return []
     shapes = [str(shape) for shape in page.runs["shape"].unique()]

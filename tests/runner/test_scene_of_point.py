@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.runner.setting import box_of, build_scene, derived_parameters
+from harness.runner.scene_of_point import box_of, build_scene, derived_parameters
 
 
 def scene_of(experiment):

@@ -1,4 +1,4 @@
-"""The exact judge against brute force: edges of each triangle against the other, in fractions."""
+"""Whether two triangles share a point, against brute force: edges of each against the other, in fractions."""
 
 from fractions import Fraction
 from itertools import pairwise
