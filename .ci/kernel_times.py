@@ -46,13 +46,10 @@ def main() -> None:
         try:
             write_cases(cases)
             sides = {"base": base, "here": HERE}
-            rounds = [
-                {
-                    name: measure(checkout, cases, Path(folder, f"{name}-{number}.db"))
-                    for name, checkout in sides.items()
-                }
-                for number in range(chosen.rounds)
-            ]
+            rounds = []
+            for number in range(chosen.rounds):
+                databases = {name: Path(folder, f"{name}-{number}.db") for name in sides}
+                rounds.append({name: measure(sides[name], cases, databases[name]) for name in sides})
         finally:
             git("worktree", "remove", "--force", str(base))
     print_table(chosen.base, rounds)
@@ -66,7 +63,8 @@ def write_cases(folder: Path) -> None:
         count = int(scene.rpartition("count: ")[2])
         ratio = (6 * packing / (3.141592653589793 * count)) ** (2 / 3)
         (folder / f"case{number}.yaml").write_text(
-            f"title: {name}\nscene: {{{scene}, box_ratio: {ratio:.12g}, seed: 1}}\nmotion: {{{motion}, response: elastic}}\n"
+            f"title: {name}\nscene: {{{scene}, box_ratio: {ratio:.12g}, seed: 1}}\n"
+            f"motion: {{{motion}, response: elastic}}\n"
             f"engine: {{algorithm: {algorithm}}}\nmeasure: {{repeats: 1}}\n"
         )
 
@@ -74,14 +72,11 @@ def write_cases(folder: Path) -> None:
 def measure(checkout: Path, cases: Path, database: Path) -> dict[str, float]:
     """CPU seconds by case, of those that the checkout can run."""
     environment = os.environ | {"PYTHONPATH": str(checkout)}
-    for file in sorted(cases.glob("*.yaml")):  # one by one, so that a case that a side does not know costs itself alone
-        run(
-            [sys.executable, "-m", "harness", "sweep", str(file), "--db", str(database), "--quiet"],
-            checkout,
-            environment,
-        )
-    command = [sys.executable, "-m", "harness", "export", "--db", str(database), "--format", "json"]
-    runs = json.loads(run(command, checkout, environment).stdout or "{}").get("runs", [])
+    harness, kept = [sys.executable, "-m", "harness"], ["--db", str(database)]
+    for file in sorted(cases.glob("*.yaml")):  # one by one: a case that a side does not know costs itself alone
+        run([*harness, "sweep", str(file), *kept, "--quiet"], checkout, environment)
+    exported = run([*harness, "export", *kept, "--format", "json"], checkout, environment).stdout
+    runs = json.loads(exported or "{}").get("runs", [])
     metrics = {row["experiment"]: row["metrics"] for row in runs if row["status"] == "ok"}
     clocks = {name: (f"case{number}", clock) for number, (name, (*_, clock)) in enumerate(CASES.items())}
     return {name: metrics[case][clock] for name, (case, clock) in clocks.items() if clock in metrics.get(case, {})}
@@ -91,9 +86,8 @@ def print_table(base: str, rounds: list[dict[str, dict[str, float]]]) -> None:
     """Ratios of the working tree to the base, by case."""
     print(f"CPU time against {base}: median of paired ratios [range], above 1 is slower")
     for name in CASES:
-        pairs = [
-            (one["here"][name], one["base"][name]) for one in rounds if name in one["here"] and name in one["base"]
-        ]
+        known = [one for one in rounds if name in one["here"] and name in one["base"]]
+        pairs = [(one["here"][name], one["base"][name]) for one in known]
         ratios = [here / before for here, before in pairs if before > 0]
         if ratios:
             print(f"  {name:32} {median(ratios):.2f} [{min(ratios):.2f}, {max(ratios):.2f}]")
