@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from time import monotonic
 from typing import TYPE_CHECKING, Literal
 
-from harness.runner.estimate import spoken
+from harness.runner.estimate import duration_text
 
 if TYPE_CHECKING:
     from harness.runner.estimate import Estimate
@@ -70,7 +70,7 @@ class Progress:
         """Name the run that begins."""
         if self._drawn and monotonic() >= self._next:
             expected = self._estimate.of(job)
-            said = f"about {spoken(expected)}" if expected is not None else ""
+            said = f"about {duration_text(expected)}" if expected is not None else ""
             self._bars.update(self._run, description=name_of(job), said=said)
             self._draw()
 
@@ -81,7 +81,7 @@ class Progress:
             self._line(f"{name_of(job)}: {report.status}: {report.reason}")
         elif self._detail == "verbose":
             seconds = report.conditions.get("seconds")
-            self._line(f"{name_of(job)}: {report.status}{f', {spoken(seconds)}' if seconds is not None else ''}")
+            self._line(f"{name_of(job)}: {report.status}{f', {duration_text(seconds)}' if seconds is not None else ''}")
         if monotonic() < self._next or self._detail == "quiet":
             return
         if self._drawn:
@@ -99,7 +99,7 @@ class Progress:
 
     def _time_left(self, words: str) -> str:
         seconds = self._estimate.left(self._left)
-        return words.format(spoken(seconds)) if seconds is not None and self._left else ""
+        return words.format(duration_text(seconds)) if seconds is not None and self._left else ""
 
     def _line(self, text: str) -> None:
         self._console.print(text, markup=False, highlight=False, soft_wrap=True)

@@ -202,7 +202,7 @@ def _foretell(
     import os
     from contextlib import nullcontext
 
-    from harness.runner.estimate import START_UP, spoken
+    from harness.runner.estimate import START_UP, duration_text
     from harness.runner.sweep import work_of
     from harness.store.history import history_of
 
@@ -214,7 +214,7 @@ def _foretell(
     for experiment in experiments:
         mine = [job for job in jobs if job.experiment is experiment]
         seconds = work.estimate.left(mine)
-        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else spoken(seconds)])
+        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else duration_text(seconds)])
     _print_table(["experiment", "runs to do", "time"], rows)
     backends = {job.point.engine.backend for job in jobs}
     total = work.estimate.left(jobs)
@@ -224,7 +224,7 @@ def _foretell(
     elif total is None:
         time = "no run like these was ever done, so there is no estimate of time"
     else:
-        time = f"about {spoken(total + START_UP * len(backends))}, from earlier runs of {known} of them"
+        time = f"about {duration_text(total + START_UP * len(backends))}, from earlier runs of {known} of them"
     for why in work.lacking:
         print(f"points passed over: {why}")
     print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
@@ -234,13 +234,13 @@ def _say(summary: Summary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
     import shlex
 
-    from harness.runner.estimate import spoken
+    from harness.runner.estimate import duration_text
 
     if not arguments.quiet and summary.experiments:
         rows = []
         for name, statuses in summary.experiments.items():
             failed = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()) if status != "ok")
-            rows.append([name, str(statuses.total()), failed or "none", spoken(summary.seconds[name])])
+            rows.append([name, str(statuses.total()), failed or "none", duration_text(summary.seconds[name])])
         _print_table(["experiment", "runs", "failed", "time"], rows)
     counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
     told = f" ({counts})" if counts else ""

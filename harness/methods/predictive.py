@@ -20,9 +20,9 @@ from harness.measure.kinetics import Kinetics
 from harness.methods.culled import equal_sizes
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.penetration import Penetration
-from harness.methods.sample import RESPONSES, TOUCHING, two_bodies
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import decide_penetration, decide_recording
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
 from harness.motion.course import CourseLog
 from harness.motion.finite import require_finite_state
 from harness.motion.hits import Outcome, Trace

@@ -102,7 +102,7 @@ class Cluster:
                 yield self._done(self._sent.pop(future), future)
 
     def _submit(self, job: Job, meshes: Mapping[Path, Mesh], contents: dict[str, Future]) -> Future:
-        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, asked=job.asked)
+        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, on_demand=job.on_demand)
         if mesh is not None and mesh.digest not in contents:
             # as a task, not as scattered data: it can be made again when the worker that holds it dies
             contents[mesh.digest] = self._client.submit(_itself, mesh, key=f"mesh-{mesh.digest}")

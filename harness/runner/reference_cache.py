@@ -22,7 +22,7 @@ from harness.kernel_cache import user_cache
 
 Arrays = Mapping[str, NDArray[Any]]
 
-UNUSED = 30 * 86400.0  # s after which a reference that nobody asked for is forgotten
+UNUSED = 30 * 86400.0  # s after which a reference that was not used is removed
 
 
 def folder() -> Path | None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.experiment.experiment import Point
 from harness.methods.method import WarmUp
-from harness.methods.sample import two_bodies
+from harness.methods.warm_up_scene import two_bodies
 from harness.reference.warm_up import warm_up_reference
 from harness.runner import accuracy
 from harness.runner.point import method_of_point

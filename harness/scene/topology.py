@@ -25,21 +25,21 @@ class Topology:
     ----------
     edges : of all faces, each counted once
     boundary : edges of one face
-    crowded : edges of three and more faces
+    nonmanifold : edges of three and more faces, where the surface is no manifold
     turned : edges of two faces that run around it in contrary senses, so that one is inside out
     pieces : parts that share no vertex
     """
 
     edges: int
     boundary: int
-    crowded: int
+    nonmanifold: int
     turned: int
     pieces: int
 
     @property
     def watertight(self) -> bool:
         """Whether every edge belongs to exactly two faces."""
-        return self.boundary == 0 and self.crowded == 0
+        return self.boundary == 0 and self.nonmanifold == 0
 
 
 def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
@@ -54,7 +54,7 @@ def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
     return Topology(
         edges=len(uses),
         boundary=int((uses == 1).sum()),
-        crowded=int((uses > 2).sum()),
+        nonmanifold=int((uses > 2).sum()),
         turned=int(((uses == 2) & (forward != 1)).sum()),
         pieces=int(connected_components(graph, directed=False, return_labels=False)),
     )

@@ -8,7 +8,7 @@ from rich.console import Console
 from harness.cli.main import main
 from harness.cli.progress import Progress, name_of
 from harness.experiment.load import load_text
-from harness.runner.estimate import Estimate, spoken
+from harness.runner.estimate import Estimate, duration_text
 from harness.runner.schedule import Job
 from harness.runner.task import Report
 
@@ -82,4 +82,4 @@ def test_on_a_terminal_sweep_and_run_are_drawn_between_runs_only(monkeypatch, tm
     ("seconds", "words"), [(0.04, "0.0 s"), (2.6, "3 s"), (99, "99 s"), (700, "12 min"), (12000, "3 h 20 min")]
 )
 def test_times_are_said_as_people_say_them(seconds, words):
-    assert spoken(seconds) == words
+    assert duration_text(seconds) == words
