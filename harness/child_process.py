@@ -26,6 +26,7 @@ from typing import Literal, NoReturn
 import psutil
 
 from harness.process_limits import adopts_orphans, isolate
+from harness.python_child import python_command
 
 _LENGTH = struct.Struct("!Q")
 _CHUNK = 2**20
@@ -160,7 +161,7 @@ class Child:
         ours, theirs = socket.socketpair()
         with theirs:
             program = subprocess.Popen(
-                [sys.executable, "-m", module, str(theirs.fileno()), *arguments],
+                python_command(module, str(theirs.fileno()), *arguments),
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,

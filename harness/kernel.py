@@ -66,7 +66,9 @@ def strict_step(function: Function) -> Function:
 
 
 def _kept(function: Any, **options: Any) -> Any:
-    """Compile, or load what was compiled before."""
+    """Compile, or load what was compiled before; nothing of either where numba is told not to compile."""
+    if getattr(numba.config, "DISABLE_JIT", False):
+        return function
     with own_cache(_ROOMS) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
         made = _njit(cache=bool(folder), **options)(function)
         # where ours takes none, as on a full disk, numba turns to one that old code of ours may stand in

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 # `python -m` would look into the working directory first, where a file such as random.py may lie.
@@ -13,4 +14,5 @@ _RUN = (
 
 def python_command(module: str, *arguments: str) -> list[str]:
     """The command line that runs a module with arguments, and with the `sys.path` of this process."""
-    return [sys.executable, "-c", _RUN, "\n".join(sys.path), module, *arguments]
+    path = "\n".join(map(os.path.abspath, sys.path))
+    return [sys.executable, "-c", _RUN, path, module, *arguments]

@@ -69,6 +69,7 @@ def test_kernels_import_no_collision_library(room):
         assert not LIBRARIES & {module.split(".")[0] for module in imported}, file.relative_to(PACKAGE)
 
 
+@pytest.mark.slow
 def test_no_file_outside_of_the_methods_and_the_vocabulary_names_an_algorithm():
     words = set(ALGORITHMS)
     for file in PACKAGE.rglob("*.py"):

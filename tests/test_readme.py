@@ -39,6 +39,7 @@ def test_every_command_named_exists():
     assert set(spoken + typed) <= COMMANDS.keys()
 
 
+@pytest.mark.slow
 def test_an_experiment_is_added_as_it_says(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     *before, sweep, _ = commands(blocks("Add an experiment")[0])
@@ -61,6 +62,7 @@ def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
     np.testing.assert_array_equal(*found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", blocks("From Python", "python"))
 def test_the_lines_for_python_run(block, monkeypatch):
     monkeypatch.chdir(README.parent)

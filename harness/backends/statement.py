@@ -3,32 +3,27 @@
 Those of this package are asked here. A stranger's is imported in a process of its own, so that one that exits, hangs
 or prints costs its own line only:
 
-    python -m harness.backends.statement NAME FD
+    python -m harness.backends.statement FD NAME
 """
 
 from __future__ import annotations
 
 import json
 import os
-import signal
-import subprocess
 import sys
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
-from multiprocessing.connection import Connection
-from typing import Any
 
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, units
-from harness.python_child import python_command
+from harness.child_process import Channel, Child
+from harness.process_limits import isolate
 from harness.vocabulary import Shape
 
 # s for the import and the answer of a stranger, of which a person waits for none with the first and for all that
 # their plan depends on with the second.
 LISTED, NEEDED = 20.0, 120.0
-_LARGEST = 100_000  # bytes
 
 
 @dataclass(frozen=True)
@@ -116,49 +111,21 @@ def _say(name: str) -> Statement:
             )
     except registry.BackendError as error:
         return Statement(_one_line(error.why), installed=False)
-    except BaseException as error:
+    except (Exception, SystemExit) as error:
         return Statement(_one_line(f"{type(error).__name__}: {error}"))
 
 
 def _say_elsewhere(name: str, seconds: float) -> Statement:
-    receiver, sender = os.pipe()
-    with Connection(receiver) as channel:
-        try:
-            child = subprocess.Popen(
-                python_command("harness.backends.statement", name, str(sender)),
-                pass_fds=[sender],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                start_new_session=True,
-            )
-        finally:
-            os.close(sender)
-        try:
-            if not channel.poll(seconds):
-                return Statement(f"importing it did not end within {seconds:g} s")
-            return _read(channel.recv_bytes(_LARGEST))
-        except (EOFError, OSError):
-            with suppress(subprocess.TimeoutExpired):
-                child.wait(1.0)
-            return Statement(f"importing it {_told(child.poll())}")
-        except (ValueError, TypeError):
-            return Statement("what it says of itself is garbage")
-        finally:
-            with suppress(ProcessLookupError):
-                os.killpg(child.pid, signal.SIGKILL)  # with what it has started
-            child.wait()
-
-
-def _told(code: int | None) -> str:
-    if code is None:
-        return "took away what its answer would come through"
-    return f"ended its process with {f'signal {-code}' if code < 0 else f'exit code {code}'}"
-
-
-def _read(answer: bytes) -> Statement:
-    said: dict[str, Any] = json.loads(answer)
-    return Statement(**said)
+    with Child.spawn("harness.backends.statement", [name], os.environ) as child:
+        answer = child.receive(seconds)
+        if answer == "timeout":
+            return Statement(f"importing it did not end within {seconds:g} s")
+        if not isinstance(answer, bytes):
+            return Statement(f"importing it ended its process with {child.end()}")
+    try:
+        return Statement(**json.loads(answer))
+    except (ValueError, TypeError):
+        return Statement("what it says of itself is garbage")
 
 
 def _one_line(text: str) -> str:
@@ -166,5 +133,6 @@ def _one_line(text: str) -> str:
 
 
 if __name__ == "__main__":
-    Connection(int(sys.argv[2])).send_bytes(json.dumps(asdict(_say(sys.argv[1]))).encode())
+    isolate()
+    Channel(int(sys.argv[1])).send(json.dumps(asdict(_say(sys.argv[2]))).encode())
     os._exit(0)

@@ -21,6 +21,7 @@ from typing import Any
 
 import psutil
 
+from harness.child_process import Ending
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
@@ -245,7 +246,7 @@ class _Server:
 def _told(code: int | None) -> str:
     if code is None:
         return "did not come to its end"
-    return f"ended its process with {f'signal {-code}' if code < 0 else f'exit code {code}'}"
+    return f"ended its process with {Ending(code)}"
 
 
 def _marked(mark: str) -> list[psutil.Process]:

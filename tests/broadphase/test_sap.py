@@ -70,6 +70,7 @@ def scenes(draw):
     return positions + centre, radii, half
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(scenes())
 def test_it_finds_exactly_what_brute_force_finds(scene):

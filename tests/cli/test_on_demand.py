@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from harness.cli.main import main
 
 PLAIN = """
@@ -36,6 +38,7 @@ def runs(capsys):
     return json.loads(capsys.readouterr().out)["runs"]
 
 
+@pytest.mark.slow
 def test_a_metric_is_made_where_an_experiment_names_it_also_of_points_that_were_run_without(
     tmp_path, monkeypatch, capsys
 ):

@@ -33,6 +33,7 @@ def told(tmp_path, monkeypatch, capsys):
     return sweep
 
 
+@pytest.mark.slow
 def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(told):
     output = told()
     first, failure = output.err.splitlines()

@@ -29,6 +29,7 @@ def compared(capsys, *arguments):
     return code, json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 def test_fcl_and_pybullet_have_no_real_disagreement(shape, tmp_path, capsys):
     code, document = compared(capsys, written(tmp_path, shape))
@@ -44,6 +45,7 @@ def test_fcl_and_pybullet_have_no_real_disagreement(shape, tmp_path, capsys):
     assert pair["verdicts"] == sum(pair[kind] for kind in kinds) > 31 * 190
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "count"),
     [("drops", 60), ("flips", 10), ("swaps", 10)],
@@ -69,6 +71,7 @@ def test_a_defect_of_turned_shapes_is_caught_as_bodies_fly(name, defective):
     assert found.tallies[0].real == len(found.cases)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["crashes", "hangs"])
 def test_a_backend_that_dies_at_a_pose_is_asked_the_others(name, defective):
     defective(name)

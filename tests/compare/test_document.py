@@ -1,10 +1,13 @@
 """What the database keeps of a comparison, and when."""
 
+import pytest
+
 from harness.cli.main import main
 from harness.store import tables
 from tests.compare.conftest import two_spheres
 
 
+@pytest.mark.slow
 def test_verdicts_are_kept_where_db_says_and_the_newest_count(defective, tmp_path, capsys):
     path = two_spheres(tmp_path / "two.yaml", 0)
     database = tmp_path / "kept.db"
@@ -19,6 +22,7 @@ def test_verdicts_are_kept_where_db_says_and_the_newest_count(defective, tmp_pat
     assert len(shown["section"]) == 2
 
 
+@pytest.mark.slow
 def test_a_sweep_compares_what_asks_for_it_once(tmp_path, capsys):
     path = tmp_path / "asked.yaml"
     path.write_text(

@@ -9,6 +9,7 @@ from harness.compare.poses import flown
 from tests.conftest import cube_mesh, random_scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 def test_first_contacts_are_as_far_apart_as_they_say(shape):
     seen = set()
@@ -28,6 +29,7 @@ def test_first_contacts_are_as_far_apart_as_they_say(shape):
     assert len(seen) == (1 if shape == "sphere" else 9)
 
 
+@pytest.mark.slow
 def test_the_same_poses_are_made_every_time():
     once, again = (list(hard_poses("hull", cube_mesh())) for _ in range(2))
     for one, other in zip(once, again, strict=True):
@@ -37,6 +39,7 @@ def test_the_same_poses_are_made_every_time():
             assert np.array_equal(pose.quaternions, same.quaternions)
 
 
+@pytest.mark.slow
 def test_some_small_bodies_lie_inside_large_ones():
     inside = [
         judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions).contained

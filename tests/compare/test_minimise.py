@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import pytest
 
 from harness.cli.main import main
 from harness.compare.comparison import disagreements
@@ -14,6 +15,7 @@ from tests.compare.conftest import two_spheres
 from tests.conftest import cube_mesh, make_bodies
 
 
+@pytest.mark.slow
 def test_a_defect_that_needs_many_bodies_is_reduced_to_those_it_needs(defective):
     name = defective("swaps")
     positions = [[0, 0, 0], [2, 0, 0], *([k, 3.0, 0] for k in range(4)), [0.4, 0.2, 0.1]]
@@ -24,6 +26,7 @@ def test_a_defect_that_needs_many_bodies_is_reduced_to_those_it_needs(defective)
     assert (small.scene.bodies.positions == small.scene.bodies.positions.round(1)).all()
 
 
+@pytest.mark.slow
 def test_a_defect_that_depends_on_order_is_reported_with_frame_and_question(defective, tmp_path, capsys):
     path = two_spheres(tmp_path / "rare.yaml", 40)
     names = f"fcl,{defective('drops')}"

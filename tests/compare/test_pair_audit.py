@@ -1,6 +1,7 @@
 """What an audit counts beside disagreements: errors that both share, and approximations."""
 
 import numpy as np
+import pytest
 
 from harness.compare.comparison import compare
 from harness.compare.minimise import minimise
@@ -16,6 +17,7 @@ def at_rest(scene):
     return PoseSet(scene, lambda held: (pose,), hard=True)
 
 
+@pytest.mark.slow
 def test_two_that_are_wrong_together_are_found_by_the_judge(defective):
     names = (defective("blind"), defective("blind-too"))
     scene = Scene("hull", cube_mesh(), make_bodies([[0, 0, 0], [0.3, 0, 0]]), Box(np.full(3, 2.0)))

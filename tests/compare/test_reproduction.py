@@ -21,6 +21,7 @@ motion: {duration: 0, response: none}
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "bodies"), [("swaps", 3), ("inflates", 2)])
 def test_a_saved_disagreement_is_found_again(name, bodies, defective, tmp_path, capsys):
     path = tmp_path / "three.yaml"

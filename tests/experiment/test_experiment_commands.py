@@ -71,6 +71,7 @@ def test_validate_says_everything_about_every_file(capsys: pytest.CaptureFixture
     ]
 
 
+@pytest.mark.slow
 def test_a_mesh_that_cannot_be_opened_is_an_error_where_it_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     Path("m.yaml").write_text("title: t\nscene:\n  count: 2\n  box_ratio: 1/9\nsweep:\n  mesh: [cube.ply, duck.obj]\n")
     assert main(["validate", "m.yaml"]) == 2

@@ -16,6 +16,7 @@ def answers(scene, algorithm):
     return asked.pairs(scene.bodies.positions, scene.bodies.quaternions).tolist(), asked.counters
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("algorithm", ["grid", "tree"])
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 @settings(max_examples=30)

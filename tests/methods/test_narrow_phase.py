@@ -23,6 +23,7 @@ def assert_as_brute_force(scene):
     assert pairs(scene) == pairs(scene, "brute-force")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*MESHES, "icosphere-1280.ply", "cube.ply"])
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 @settings(max_examples=5)
@@ -34,6 +35,7 @@ def test_in_a_crowd_the_pairs_are_those_of_brute_force(name, shape, seed, side, 
     assert_as_brute_force(Scene(shape, mesh, bodies, Box(np.full(3, side * size))))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*MESHES, "icosphere-1280.ply", "cube.ply"])
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 @settings(max_examples=5)
@@ -43,6 +45,7 @@ def test_in_a_crowd_of_mixed_sizes_the_pairs_are_those_of_brute_force(name, shap
     assert_as_brute_force(crowd(mesh_named(name), shape, 16, side, seed, sizes))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*MESHES, "cube.ply"])
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_a_gap_or_an_overlap_of_1e_9_decides(name, shape):
@@ -75,6 +78,7 @@ def test_a_gap_or_an_overlap_of_1e_9_decides(name, shape):
         assert pairs(two_at(touching + 1e-9)) == pairs(two_at(touching + 1e-9), "brute-force") == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 def test_meshes_that_reach_into_each_others_hulls_are_told_apart(name):
     """Interlocked: the hulls overlap and the surfaces do not."""
@@ -88,6 +92,7 @@ def test_meshes_that_reach_into_each_others_hulls_are_told_apart(name):
     assert found > 0 or name.endswith("soccerball.obj")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*MESHES, "cube.ply"])
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 @pytest.mark.parametrize("ratio", [1.0, 3.0])

@@ -194,6 +194,7 @@ def test_an_event_driven_pipeline_is_what_its_plan_says(shape, name, attribute, 
     assert tuple(found) == values
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 @pytest.mark.parametrize("recorded", [False, True])
 def test_an_event_driven_run_is_recorded_and_measured_as_planned(shape, recorded, calls):

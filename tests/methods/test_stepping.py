@@ -76,6 +76,7 @@ def test_with_no_response_a_hit_is_the_first_frame_that_sees_a_contact():
     assert outcome.metrics["box_hits"] == 0
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 1000))
 def test_both_backends_fly_the_same_spheres_alike(seed):

@@ -33,6 +33,7 @@ def sequence(trace):
     return [(*bodies, wall) for bodies, wall in zip(trace.bodies.tolist(), trace.walls.tolist(), strict=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("response", ["reflect", "elastic"])
 def test_short_frames_see_the_events_in_the_order_of_the_schedule(gas, response):
     exact, frames = predicted(gas, response).trace, stepped(gas, response, 1e-4).trace

@@ -44,6 +44,7 @@ def until_too_close_to_call(reference, tolerance):
     return reference.events[: close[0]] if len(close) else reference.events
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(scenes(), st.sampled_from(["cells", "lists"]))
 def test_the_scheduler_meets_the_events_of_the_plain_loop(scene, search):

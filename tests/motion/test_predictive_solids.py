@@ -92,6 +92,7 @@ def test_a_spinning_cube_meets_a_cube_and_a_wall_when_its_edge_has_turned_there(
     assert fly(alone, 7.0, tolerance=1e-11).events["time"][0] == pytest.approx(first(1.9), abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "shape", "response", "restitution", "ratio", "seeds"),
     [
@@ -253,6 +254,7 @@ def test_a_rib_that_strikes_while_the_centres_separate_goes_through_in_silence()
     assert len(fly(scene, 3.0).events) >= 1
 
 
+@pytest.mark.slow
 def test_orientations_keep_their_digits_in_long_runs():
     scene = crowd(cube_mesh(), 3, 1.2, 4, spin=40.0)
     bodies = scene.bodies

@@ -103,6 +103,7 @@ def test_icospheres_converge_to_the_sphere_with_the_square_of_their_edges():
     assert (abs(orders - 2) < 0.35).all()
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.integers(0, 10**6), st.sampled_from(["cube", *MESHES]), st.sampled_from([0.0, 3.0, 30.0]))
 def test_nothing_touches_before_an_impact_and_at_it_the_gap_is_within_tolerance(seed, name, spin):

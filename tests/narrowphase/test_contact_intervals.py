@@ -24,6 +24,7 @@ def of_hulls(name, a, b, end, begin=0.0, tolerance=1e-9):
     return hull_contacts(hull, hull, a, b, begin, end, tolerance)
 
 
+@pytest.mark.slow
 def test_cubes_that_fly_through_each_other_touch_from_face_to_face_until_they_are_apart():
     a, b = body(), body((5, 0.1, 0.07), (-2.0, 0, 0))
     expected = [[(5 - WIDTH) / 2, (5 + WIDTH) / 2]]
@@ -62,6 +63,7 @@ def test_a_spinning_bar_of_two_cubes_width_touches_a_wall_cube_twice_a_turn():
         assert of("cube", a, b, 4 * quarter).intervals == pytest.approx(np.array(expected), abs=1e-8)
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES), st.sampled_from([0.0, 3.0, 10.0]))
 def test_surfaces_touch_at_every_instant_of_a_contact_and_at_none_between(seed, name, spin):

@@ -77,6 +77,7 @@ def test_triangles_in_general_position_are_nearly_all_decided():
     assert unsure == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [-1e-11, 1e-11])
 def test_a_point_on_a_face_is_told_by_the_side_it_comes_from(gap):
     face = ((0.0, 0, 0), (1.0, 0, 0), (0.0, 1, 0))

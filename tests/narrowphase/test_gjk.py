@@ -48,6 +48,7 @@ def assert_certified(mesh, found, pose):
     assert found.upper - found.lower <= 1e-12 * found.upper + 1e-14 * scale
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 def test_both_bounds_on_the_distance_are_proved_and_agree(name):
     mesh, rng = mesh_named(name), np.random.default_rng(1)
@@ -91,6 +92,7 @@ def test_concentric_hulls_are_no_trap():
             assert distance(cube_mesh(), [0, 0, 0], turn_b=turn, sizes=sizes)[0].verdict in (OVERLAP, UNDECIDED)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
 def test_a_gap_or_overlap_of_1e_9_of_the_size_is_told(name, size):
@@ -107,6 +109,7 @@ def test_a_gap_or_overlap_of_1e_9_of_the_size_is_told(name, size):
             assert distance(mesh, near, *turned, sizes=(size, size))[0].verdict == verdict
 
 
+@pytest.mark.slow
 @settings(max_examples=50)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES), st.sampled_from([0.5, 1.0, 2.0]))
 def test_a_warm_start_changes_no_answer(seed, name, far):

@@ -60,6 +60,7 @@ def as_tuples(triangle):
     return tuple(tuple(map(float, corner)) for corner in triangle)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(
     st.integers(0, 10**6),
@@ -91,6 +92,7 @@ def test_the_distance_of_triangles_is_the_least_over_their_features(seed, form):
         assert apart == pytest.approx(found.lower, abs=1e-14)
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(st.integers(0, 10**6), st.sampled_from(["cube", *MESHES[:3]]))
 def test_the_distance_of_surfaces_is_that_of_fcl_up_to_the_limit(seed, name):

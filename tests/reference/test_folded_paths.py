@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.reference.folded_paths import folded_paths, straight_pieces
 from harness.scene.box import Box
 from tests.conftest import make_bodies
@@ -15,7 +15,7 @@ def test_pieces_follow_upon_each_other_and_are_where_the_bodies_are():
     assert len(pieces) > 10
     assert (pieces[0].begin, pieces[-1].end) == (0.5, 9.0)
     assert [piece.end for piece in pieces[:-1]] == [piece.begin for piece in pieces[1:]]
-    flight = Flight(bodies, box, folded=True, turning=False)
+    flight = Trajectory(bodies, box, folded=True, turning=False)
     for piece in pieces:
         for share in (0.0, 0.3, 1.0):
             time = piece.begin + share * (piece.end - piece.begin)

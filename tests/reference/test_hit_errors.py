@@ -1,6 +1,7 @@
 """What reported hits are worth, on contacts made up for it."""
 
 import numpy as np
+import pytest
 
 from harness.motion.hits import Trace
 from harness.reference.contacts import Contacts
@@ -29,7 +30,7 @@ def test_missed_extra_and_late_hits_are_shares_and_seconds():
 
 def test_frames_are_expected_to_miss_contacts_as_often_as_these_are_shorter():
     found = hit_errors(CONTACTS, 0.0, reported(3.15, 4.25), 0.4)
-    assert found["missed_hits_expected"] == np.mean([0.75, 0.5, 0.25, 0.0])
+    assert found["missed_hits_expected"] == pytest.approx(np.mean([0.75, 0.5, 0.25, 0.0]), rel=1e-15)
     # the variance of each is p (1 - p)
     assert found["missed_hits_deviation"] == (2 - 1.5) / np.sqrt(0.1875 + 0.25 + 0.1875)
 

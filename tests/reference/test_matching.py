@@ -34,6 +34,7 @@ def summary(matching):
 A, B, C = (0, 1), (0, 2), (1, 2)
 
 
+@pytest.mark.slow
 def test_each_hit_is_matched_with_the_contact_it_falls_into():
     contacts = spheres((A, 1, 2), (B, 1.5, 3), (A, 4, 5))
     assert summary(hits((A, 1.25), (B, 1.75), (A, 4.5), of=contacts)) == (3, 0, 0, [0.25, 0.5, 0.25])

@@ -57,6 +57,7 @@ class Outline(HTMLParser):
             assert self.open.pop() == tag, self.getpos()
 
 
+@pytest.mark.slow
 def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
     links = re.findall(r'<h[34]><a href="([^"]+)"', pages["index.html"])
     assert len(links) == len(experiments(database))
@@ -100,6 +101,7 @@ def test_a_hostile_name_stays_inside_the_report(pages):
     assert all(re.fullmatch(r"(pages/[\w./-]+/)?[\w.-]+", name) and ".." not in name for name in pages)
 
 
+@pytest.mark.slow
 def test_the_same_results_give_the_same_bytes(database, pages):
     assert dict(render(database)) == pages
 
@@ -207,6 +209,7 @@ def test_a_sweep_without_experiments_gives_an_overview_that_says_so(tmp_path):
     assert "There are no results yet" in pages["index.html"]
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_pages_and_says_where(database, pages, tmp_path, capsys):
     import argparse
 
@@ -218,6 +221,7 @@ def test_the_command_writes_the_pages_and_says_where(database, pages, tmp_path, 
     assert written == pages.keys()
 
 
+@pytest.mark.slow
 def test_results_that_are_not_there_and_folders_that_cannot_be_are_input_errors(database, tmp_path):
     with pytest.raises(InputError):
         write_report(tmp_path / "nothing.db", tmp_path / "out")

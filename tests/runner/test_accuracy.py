@@ -32,6 +32,7 @@ def metrics(text=GAS, **leaves):
     return execute(point, None).metrics
 
 
+@pytest.mark.slow
 def test_frames_see_hits_late_by_up_to_a_frame_and_by_half_of_one_in_the_middle():
     for dt in (1 / 30, 1 / 300):
         found = metrics(dt=dt)
@@ -42,6 +43,7 @@ def test_frames_see_hits_late_by_up_to_a_frame_and_by_half_of_one_in_the_middle(
     assert found["missed_hits"] == found["missed_hits_expected"] == 0
 
 
+@pytest.mark.slow
 def test_predictive_sees_every_hit_when_it_happens():
     found = metrics(algorithm="predictive")
     assert found["missed_hits"] == found["extra_hits"] == 0
@@ -50,6 +52,7 @@ def test_predictive_sees_every_hit_when_it_happens():
     assert "missed_hits_expected" not in found
 
 
+@pytest.mark.slow
 def test_a_fast_body_tunnels_as_often_as_its_contacts_are_shorter_than_a_frame():
     """One body flies through another at rest; each contact of length l is missed with probability 1 - l / dt."""
     crossing = """
@@ -70,6 +73,7 @@ measure: {repeats: 1, reference: {}}
     assert found["extra_hits"] == 0
 
 
+@pytest.mark.slow
 def test_in_free_flight_a_finer_step_follows_the_reference_longer():
     free = GAS.replace("none", "elastic")
     coarse, fine = metrics(free, dt=1 / 30), metrics(free, dt=1 / 30000, duration=1)

@@ -47,6 +47,7 @@ def servers(tmp_path_factory):
         yield opened
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", WAYS)
 def test_each_way_to_go_wrong_has_its_status(spheres, servers, count):
     _, status, reason = WAYS[count]
@@ -76,6 +77,7 @@ def ended(process, within=5.0):
     return True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hiding", ["", "os.setsid()", "os.setsid()\n    if os.fork(): os._exit(0)\n    os.setsid()"])
 def test_everything_a_run_started_ends_with_it(spheres, plugin, tmp_path, hiding):
     """A child in a session of its own, whose parent has gone, is found all the same."""
@@ -100,6 +102,7 @@ def test_what_a_backend_writes_into_any_file_it_holds_harms_nobody_else(spheres,
     assert run_one(spheres(), servers).status == "ok"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("head", "status", "reason"),
     [
@@ -136,6 +139,7 @@ def test_what_a_run_met_is_told(spheres, servers):
     assert 0.0 < report.conditions["seconds"] < 20.0
 
 
+@pytest.mark.slow
 def test_a_run_costs_less_than_50_ms_beyond_its_own_work(spheres):
     """CPU time of all that surrounds a run that has nothing to do; elapsed time would measure the other load, too."""
     experiment, cost = spheres(count=1, duration="1/60"), []
@@ -151,6 +155,7 @@ def test_a_run_costs_less_than_50_ms_beyond_its_own_work(spheres):
     assert sum(cost) / len(cost) < 0.05
 
 
+@pytest.mark.slow
 def test_leaving_the_servers_ends_them(spheres):
     with Servers() as servers:
         run_one(spheres(), servers)

@@ -51,6 +51,7 @@ def flown(name):
     return experiment, run_table(records)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in CASES if not name.startswith("hundred-")])
 def test_all_that_a_case_expects_holds(name):
     experiment, runs = flown(name)

@@ -22,6 +22,7 @@ def compiled():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
 @pytest.mark.parametrize("record", [False, True])
 def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
@@ -32,6 +33,7 @@ def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
     assert compiled() == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 @pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
 @pytest.mark.parametrize(

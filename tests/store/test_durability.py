@@ -61,6 +61,7 @@ def whole_runs(path: Path) -> int:
     return len(records)
 
 
+@pytest.mark.slow
 def test_a_kill_at_a_random_moment_loses_at_most_the_run_in_flight(path: Path) -> None:
     order = random.Random(259)
     kept = 0
@@ -78,6 +79,7 @@ def test_a_kill_at_a_random_moment_loses_at_most_the_run_in_flight(path: Path) -
         kept = found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("statement", range(1, 10))
 def test_a_death_between_any_two_statements_of_a_run_leaves_the_runs_before(path: Path, statement: int) -> None:
     writer = start(path, statement)

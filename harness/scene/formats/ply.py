@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from harness.errors import InputError
 from harness.scene.formats.ply_header import Element, Header, read_header
 from harness.scene.formats.ply_rows import BinaryRows, Column, Rows, TextRows
+from harness.scene.formats.text import LARGEST
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh
 
 CORNERS = ("vertex_indices", "vertex_index")
 COORDINATES = ("x", "y", "z")
-LARGEST = 2.0**53  # up to which a float tells whole numbers apart
 MOST = {"vertex": MAX_VERTICES, "face": MAX_FACES}
 
 

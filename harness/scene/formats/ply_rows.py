@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from harness.errors import InputError
 from harness.scene.formats.ply_header import Element, Header
-from harness.scene.formats.text import Numbers, as_text
+from harness.scene.formats.text import Numbers, as_text, gathered
 
 
 class Column(NamedTuple):
@@ -75,9 +75,7 @@ class Rows(ABC):
         if len(column.lengths) and (column.lengths == column.lengths[0]).all():
             places = column.starts[:, None] + width * np.arange(column.lengths[0])
             return self.numbers(places.reshape(-1), column.kind)
-        before = np.cumsum(column.lengths) - column.lengths
-        places = np.repeat(column.starts - width * before, column.lengths)
-        return self.numbers(places + width * np.arange(len(places)), column.kind)
+        return self.numbers(gathered(column.starts, column.lengths, width), column.kind)
 
     def _even(self, element: Element, names: tuple[str, ...]) -> list[Column] | None:
         """The columns if all rows are made as the first one is; None if not, or if the file ends before."""

@@ -11,6 +11,7 @@ import re
 from array import array
 
 import numpy as np
+from numpy.typing import NDArray
 
 from harness.errors import InputError
 from harness.scene.formats.text import as_text, floats, shown, wide_encoding
@@ -19,6 +20,13 @@ from harness.scene.polygon_mesh import MAX_FACES, PolygonMesh
 HEADER = 84
 FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 KEYWORDS = {b"facet", b"outer", b"vertex", b"endloop", b"endfacet", b"solid", b"endsolid"}
+# The words of a facet where nothing is unusual, None for numbers; and the places of its vertices' coordinates.
+REGULAR = [
+    word if word.isalpha() else None
+    for word in b"facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 endloop endfacet".split()
+]
+NUMBERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
+BLOCK = 1_000_000  # bytes of text that are looked at together
 CONTROL = re.compile(rb"[\0-\x08\x0e-\x19]")  # bytes that no text has
 
 
@@ -34,7 +42,8 @@ def read_stl(content: bytes) -> PolygonMesh:
     if len(content) >= HEADER + announced * FACE.itemsize:
         return _read_binary(content, announced)
     if wide_encoding(content) or not CONTROL.search(content[:4096]):
-        return _TextReader().read(as_text(content))
+        text = as_text(content)
+        return _read_regular(text) or _TextReader().read(text)
     if len(content) < HEADER:
         raise InputError(f"the file ends before its first face: it is {len(content)} bytes long")
     if announced > MAX_FACES:
@@ -53,8 +62,47 @@ def _read_binary(content: bytes, count: int) -> PolygonMesh:
     return PolygonMesh(vertices, np.arange(3 * count), np.full(count, 3))
 
 
+def _read_regular(text: bytes) -> PolygonMesh | None:
+    """The triangles of a text in which nothing is unusual, many at once; None of any other text."""
+    text = text.lower()
+    coordinates, place = array("d"), 0
+    while (named := text.find(b"solid", place)) >= 0:
+        start, end = text.rfind(b"\n", place, named) + 1, text.find(b"\n", named)
+        word = text[start:named].strip()
+        if word not in (b"", b"end"):
+            return None
+        while place < start:
+            stop = text.find(b"endfacet", min(place + BLOCK, start), start)
+            stop = start if stop < 0 else stop + len(b"endfacet")
+            points = _regular_facets(text[place:stop])
+            if points is None:
+                return None
+            coordinates.frombytes(points.tobytes())
+            place = stop
+        place = end if end >= 0 else len(text)
+    if not coordinates or word != b"end" or text[place:].strip():
+        return None
+    vertices = np.frombuffer(coordinates, np.float64).reshape(-1, 3)
+    return PolygonMesh(vertices, np.arange(len(vertices)), np.full(len(vertices) // 3, 3))
+
+
+def _regular_facets(facets: bytes) -> NDArray[np.float64] | None:
+    """(n, 9) float array, the coordinates of facets, if they are all as they should be."""
+    words, width = facets.split(), len(REGULAR)
+    count = len(words) // width
+    if len(words) % width or b"_" in facets:  # Python would take 1_000 for a number
+        return None
+    if any(words[column::width] != [word] * count for column, word in enumerate(REGULAR) if word):
+        return None
+    try:
+        points = np.array([list(map(float, words[column::width])) for column in NUMBERS]).T
+    except ValueError:
+        return None
+    return points if np.isfinite(points).all() else None
+
+
 class _TextReader:
-    """Reads the text form, word by word, since all of it may stand in one line."""
+    """Reads any text, word by word, since all of it may stand in one line."""
 
     def __init__(self) -> None:
         self._coordinates, self._lengths = array("d"), array("q")

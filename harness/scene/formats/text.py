@@ -13,6 +13,7 @@ from harness.errors import InputError
 MARKS = {b"\xff\xfe\0\0": "UTF-32", b"\0\0\xfe\xff": "UTF-32", b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16"}
 # Of every second one of a file's first bytes, how many are zero in UTF-16: all, where its letters are those of ASCII.
 WIDE = 0.6
+LARGEST = 2.0**53  # up to which a float tells whole numbers apart
 
 
 def wide_encoding(content: bytes) -> str | None:
@@ -82,6 +83,27 @@ def shown(word: bytes) -> str:
     """A word of a file as it may be printed."""
     text = word[:40].decode("utf-8", "replace")
     return '"' + "".join(letter if letter.isprintable() else "\ufffd" for letter in text) + '"'
+
+
+def rows(block: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """All numbers of whole lines, each with its end, that hold finite numbers only; where each line begins, its length.
+
+    Raises
+    ------
+    ValueError
+        If a word is no number.
+    """
+    words = block.replace(b"\n", b" nan ").split()
+    values = np.fromiter(map(float, words), np.float64, len(words))
+    ends = np.flatnonzero(np.isnan(values))
+    starts = np.concatenate([[0], ends[:-1] + 1])
+    return values, starts, ends - starts
+
+
+def gathered(starts: NDArray[np.int64], lengths: NDArray[np.int64], step: int = 1) -> NDArray[np.int64]:
+    """The places of lists of numbers, one list after another, whose numbers lie so many places apart."""
+    before = np.cumsum(lengths) - lengths
+    return np.repeat(starts - step * before, lengths) + step * np.arange(int(lengths.sum()))
 
 
 class Numbers:
