@@ -15,6 +15,11 @@ class Problem:
     message : what is wrong and what to do about it
     file : the file it stands in, if it stands in one
     line, column : counted from 1
+
+    Examples
+    --------
+    >>> print(Problem('unknown key "cuont"; did you mean "count"?', "experiments/mine.yaml", 7, 3))
+    experiments/mine.yaml:7:3: unknown key "cuont"; did you mean "count"?
     """
 
     message: str

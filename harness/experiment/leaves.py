@@ -87,7 +87,11 @@ LEAVES: dict[str, Leaf] = {
 
 
 def identity(value: Any) -> str:
-    """The same text for the same value of a leaf."""
+    """The same text for the same value of a leaf.
+
+    >>> identity({"uniform": [0.5, 1.5]}) == identity({"uniform": (0.5, 1.5)})
+    True
+    """
     return json.dumps(plain(value), sort_keys=True)
 
 

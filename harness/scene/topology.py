@@ -46,6 +46,10 @@ def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
     """Counts over the edges of faces, (f, 3) int array, each of whose vertices is used.
 
     Faces that name a vertex twice have no edges and are passed over.
+
+    >>> tetrahedron = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], np.int32)
+    >>> topology(tetrahedron, 4).watertight, topology(tetrahedron[1:], 4).boundary
+    (True, 3)
     """
     edges, first, uses = _edges(proper(faces))
     forward = np.bincount(edges, weights=first, minlength=len(uses))
