@@ -65,7 +65,8 @@ def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
 
     Examples
     --------
-    >>> runs = pd.DataFrame({"point": ["few", "many"], "count": [5, 50], "status": "ok", "events": 9, "run_seconds": 0.1})
+    >>> points = {"point": ["few", "many"], "count": [5, 50]}
+    >>> runs = pd.DataFrame({**points, "status": "ok", "events": 9, "run_seconds": 0.1})
     >>> worth_recording(["few", "many"], runs)
     'many'
     """
