@@ -1,4 +1,4 @@
-"""Errors that are the input's, not the program's: said to a person, with the place where to mend them."""
+"""Errors in the input, not in the program: a sentence for a person, with the place to correct."""
 
 from __future__ import annotations
 

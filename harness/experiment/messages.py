@@ -1,4 +1,4 @@
-"""What is said to people: values as they would write them, near misses, and pydantic's errors as plain sentences."""
+"""Messages for people: values as they would write them, near misses, and pydantic's errors as plain sentences."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def shown(value: Any) -> str:
 
 
 def printable(text: str) -> str:
-    """Text on one line, cut where it is long, without characters that would do something to a terminal."""
+    """Text on one line, cut where it is long, without characters that a terminal would obey."""
     cut = text[:_LONGEST] + "…" if len(text) > _LONGEST else text
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in cut)
 

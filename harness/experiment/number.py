@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from harness.experiment.messages import shown
 
-# Beyond these, squares and cubes of lengths and speeds leave what floats can tell apart.
+# Beyond these, squares and cubes of lengths and speeds would overflow or underflow.
 SMALLEST, LARGEST = 1e-30, 1e30
 
 _UNITS = {"": 1, "b": 1} | {
@@ -25,7 +25,7 @@ BYTES_PATTERN = r"^[0-9]+(\.[0-9]+)? *([kKmMgGtT]?[iI]?[bB])?$"
 
 
 def wrong(message: str) -> PydanticCustomError:
-    """An error for a validator to raise, said to people word for word."""
+    """An error for a validator to raise, whose message is shown word for word."""
     return PydanticCustomError("said", "{message}", {"message": message})
 
 
