@@ -1,8 +1,8 @@
 """Cull, then decide: a broad phase finds the pairs whose bounding spheres touch, and the exact shape decides on those.
 
-Each stage of detection leaves less to the next: the spheres leave pairs that are close, the hulls those whose hulls
-overlap (for shape `hull` they decide), the search for a crossing those that it cannot prove to touch or not to, FCL the
-answer. Any broad phase of `harness.broadphase` is flown like this.
+Each stage of detection passes fewer pairs on: the bounding spheres those that are close, the hulls those whose hulls
+overlap (for shape `hull` they decide), the search for a crossing those that it can neither prove to touch nor to be
+apart, and FCL decides the rest. Any broad phase of `harness.broadphase` is used like this.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ FCL_DECIDES = "what the other stages leave open would stay so"
 
 
 class Culled(SteppedMethod):
-    """Detection by a broad phase and kernels; FCL has what they cannot prove."""
+    """Detection by a broad phase and kernels; FCL decides what they cannot prove."""
 
     leaves_out: ClassVar[bool] = True
 

@@ -1,4 +1,4 @@
-"""Methods that look at frames: what their plans have in common, and how the plan becomes a pipeline.
+"""Methods that step from frame to frame: what their plans have in common, and how the plan becomes a pipeline.
 
 A frame moves the bodies, finds all touching pairs, answers them, then the walls. How the pairs are found is each
 method's own (`detector`); everything around it is decided and assembled here.
@@ -23,7 +23,7 @@ from harness.vocabulary import Shape
 
 
 class SteppedMethod(Method):
-    """A method that looks at frames.
+    """A method that steps from frame to frame.
 
     Attributes
     ----------
@@ -186,7 +186,7 @@ def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
 
 
 class _AlwaysTouching:
-    """Stands for a detector where only what is around it is to be compiled: the two bodies always touch."""
+    """A detector for the warm-up, which compiles only what is around it: the two bodies always touch."""
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         return TOUCHING

@@ -17,7 +17,7 @@ from harness.scene.box import Box
 
 
 class Trajectory:
-    """Bodies in free trajectory, moved to any time on demand.
+    """The poses of bodies that fly freely between hits, at any time asked for.
 
     Parameters
     ----------

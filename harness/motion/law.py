@@ -1,4 +1,4 @@
-"""How the bodies of a run move, and for how long: all that a method is told of its motion."""
+"""How the bodies of a run move, and for how long: all that a method needs to know of its motion."""
 
 from __future__ import annotations
 
