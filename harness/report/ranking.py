@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from harness.measure.noise import told_apart
+from harness.measure.noise import distinguishable
 from harness.measure.statistics import Exponent, Summary, fit_exponent, paired_ratio
 from harness.report.point import MeasuredPoint
 from harness.report.series import Arrangement, Series
@@ -27,7 +27,7 @@ class Ranked:
     @property
     def level(self) -> bool:
         """Whether it is the best, or not to be told from it: the ratio's interval is not beyond the noise floor."""
-        return self.best or (self.behind is not None and not told_apart(self.behind, self.floor))
+        return self.best or (self.behind is not None and not distinguishable(self.behind, self.floor))
 
 
 @dataclass(frozen=True)

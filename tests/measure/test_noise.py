@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.measure.noise import noise_floor, told_apart
+from harness.measure.noise import distinguishable, noise_floor
 from harness.measure.statistics import paired_ratio, summary
 
 NOISES = {
@@ -35,7 +35,7 @@ def winner(times, floor):
     """Whether the arm with the lowest median is told apart from every other one, as the pages rank."""
     order = np.argsort(np.median(times, axis=0))
     best, *others = (times[:, arm] for arm in order)
-    return all(told_apart(paired_ratio(other, best), floor) for other in others)
+    return all(distinguishable(paired_ratio(other, best), floor) for other in others)
 
 
 @pytest.mark.parametrize("arms", [2, 3, 6])

@@ -1,4 +1,4 @@
-"""How far a run is from its reference, and how far that is to be trusted."""
+"""The errors of a run against its reference, and of the reference itself."""
 
 from harness.measure.metric import Better, Kind, Metric
 

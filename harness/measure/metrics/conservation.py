@@ -1,4 +1,4 @@
-"""How far a run has strayed from what ought to stay constant."""
+"""How far what ought to stay constant has drifted."""
 
 from harness.measure.metric import Metric
 

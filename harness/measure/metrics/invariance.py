@@ -1,4 +1,4 @@
-"""How far a run differs from the same one told in another way: backwards, renumbered, mirrored, in other units."""
+"""How far a run differs from the same motion backwards, with other numbers of bodies, mirrored, or in other units."""
 
 from harness.measure.metric import Metric
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from harness.measure.noise import told_apart
+from harness.measure.noise import distinguishable
 from harness.measure.statistics import Exponent, Summary, fit_exponent
 from harness.report.point import MeasuredPoint
 from harness.report.ranking import times_worse
@@ -133,7 +133,7 @@ class Tradeoff:
 
     def level(self, behind: Summary | None) -> bool:
         """Whether a ratio to the first cannot be told from 1."""
-        return behind is None or not told_apart(behind, self.floor)
+        return behind is None or not distinguishable(behind, self.floor)
 
     @property
     def decided(self) -> float | None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from harness.measure.noise import told_apart
+from harness.measure.noise import distinguishable
 from harness.measure.statistics import CONFIDENCE, Summary
 from harness.report.quantity import exponent_text, quantity
 from harness.report.ranking import Growth, times_worse
@@ -73,7 +73,7 @@ def change_sentences(arrangement: Arrangement) -> list[Markup]:
             quantity(last.median(metric), metric_unit(metric)),
         )
         how = ratio_text(ratio)
-        apart = told_apart(ratio, arrangement.floor(metric) if is_noisy(metric) else 0.0)
+        apart = distinguishable(ratio, arrangement.floor(metric) if is_noisy(metric) else 0.0)
         told = Markup("") if apart else Markup(", not to be told from no change")
         found.append(text + Markup(": {}{}.").format(how, told))
     return found

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from harness.errors import InputError
 from harness.measure.metrics import DERIVED, METRICS
-from harness.measure.noise import noise_floor, told_apart
+from harness.measure.noise import distinguishable, noise_floor
 from harness.measure.statistics import Summary, paired_ratio
 from harness.store.records import RunRecord, SweepRecord
 from harness.store.snapshot import Snapshot, measuring_sweeps, snapshot
@@ -178,7 +178,7 @@ def _point(label: str, old: Sequence[RunRecord], new: Sequence[RunRecord], floor
 def _pace(ratio: Summary, floor: float) -> Pace:
     if ratio.n < 2:
         return "unknown"
-    if not told_apart(ratio, floor):
+    if not distinguishable(ratio, floor):
         return "same"
     return "slower" if ratio.median > 1.0 else "faster"
 
