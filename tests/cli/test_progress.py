@@ -1,4 +1,4 @@
-"""How a sweep goes, told on standard error: plainly without a terminal, and never while something is timed."""
+"""The progress of a sweep on standard error: plain lines without a terminal, and never while something is timed."""
 
 import io
 
@@ -22,7 +22,7 @@ measure: {repeats: 1}
 
 
 @pytest.fixture
-def told(tmp_path, monkeypatch, capsys):
+def swept(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "p.yaml").write_text(EXPERIMENT)
 
@@ -34,8 +34,8 @@ def told(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.slow
-def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(told):
-    output = told()
+def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(swept):
+    output = swept()
     first, failure = output.err.splitlines()
     assert first == "2 runs to do"
     assert failure.startswith("p (count 500, repeat 0): rejected: ")
@@ -45,11 +45,11 @@ def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(to
     assert table[1].split()[:4] == ["p", "2", "1", "rejected"]
 
 
-def test_quiet_says_only_what_goes_wrong_and_verbose_a_line_a_run(told):
-    quiet = told("--quiet")
+def test_quiet_says_only_what_goes_wrong_and_verbose_a_line_a_run(swept):
+    quiet = swept("--quiet")
     assert [line.split(":")[0] for line in quiet.err.splitlines()] == ["p (count 500, repeat 0)"]
     assert "experiment  " not in quiet.out
-    verbose = told("--verbose")
+    verbose = swept("--verbose")
     assert any(line.startswith("p (count 2, repeat 0): ok, ") for line in verbose.err.splitlines())
 
 

@@ -161,7 +161,7 @@ def test_a_convex_mesh_of_one_size_is_judged_by_its_hull_alone():
     assert stages(pumpkins)["crossing"].kept
 
 
-def test_pairs_are_left_out_just_where_nobody_can_meet():
+def test_pairs_are_left_out_just_where_no_pair_can_meet():
     """Head on, 1 m of gap at 1 m/s each: they meet after half a second, and not before."""
     assert no_pair_can_meet(two(1.0, 1.0), 0.5 * (1 - 1e-6))
     assert not no_pair_can_meet(two(1.0, 1.0), 0.5)
