@@ -32,7 +32,7 @@ class AlgorithmWord:
     Parameters
     ----------
     meaning : which questions it asks, and when
-    stepped : whether it looks at frames, `dt` apart; else it computes events, as exactly as `tolerance` says
+    stepped : whether it steps from frame to frame, `dt` apart; else it computes events, as exactly as `tolerance` says
     own : whether the pairs are found by this program; else by the backend's own broad phase
     """
 
@@ -71,7 +71,7 @@ METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages"
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 
 KNOBS = ("dt", "tolerance")
-"""Those of them that trade accuracy for time: the same method, set otherwise."""
+"""Those of them that trade accuracy for time within one method."""
 
 
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
@@ -137,7 +137,7 @@ class MethodName(NamedTuple):
 
     @property
     def stepped(self) -> bool:
-        """Whether it looks at frames; else it computes events."""
+        """Whether it steps from frame to frame; else it computes events."""
         return self._word.stepped
 
     @property

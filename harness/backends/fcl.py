@@ -46,7 +46,7 @@ class Fcl:
         self._bodies.place(positions, quaternions)
         count = len(positions)
         # A result is reused because making one costs as much as a far pair, but for one call only: it keeps every
-        # contact it was ever given, and its own verdict is sticky. What `collide` returns is the pair's verdict.
+        # contact it was ever given, and its own verdict, once true, stays so. What `collide` returns is the pair's.
         result = fcl.CollisionResult()
         verdicts = map(fcl.collide, *(self._listed or self._both_sides()), repeat(self._request), repeat(result))
         touching = list(compress(combinations(range(count), 2), verdicts))

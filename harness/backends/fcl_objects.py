@@ -1,7 +1,7 @@
 """Bodies as FCL collision objects: spheres, convex hulls or triangle meshes, one geometry for all bodies of a size.
 
-FCL checks little: an empty mesh, an index out of range or a pose that is not finite crashes it or makes it lie. Meshes
-and hulls are sound by construction here (the scene has validated them); poses are checked before FCL sees them.
+FCL checks little: with an empty mesh, an index out of range or a pose that is not finite it crashes or answers wrongly.
+Meshes and hulls are valid here, for the scene has checked them; poses are checked before FCL gets them.
 """
 
 from __future__ import annotations

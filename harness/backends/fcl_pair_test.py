@@ -44,7 +44,7 @@ class FclPairTest:
         self._bodies.place(positions, quaternions, np.unique(pairs))
         objects, request = self._bodies.objects, self._request
         # A result is reused because making one costs as much as a far pair, but for one frame only: it keeps every
-        # contact it was ever given, and its own verdict is sticky. What `collide` returns is the pair's verdict.
+        # contact it was ever given, and its own verdict, once true, stays so. What `collide` returns is the pair's.
         result = fcl.CollisionResult()
         verdicts = [fcl.collide(objects[i], objects[j], request, result) for i, j in pairs.tolist()]
         return np.array(verdicts, np.bool_)

@@ -30,8 +30,8 @@ class FclTree:
         bodies = replace(scene.bodies, sizes=2 * scene.enclosing_radii)
         spheres = Scene("sphere", scene.mesh, bodies, scene.box)
         self.pair_tests = 0
-        # The tree hands back other objects than it was given. A body is known again by its geometry, which a contact
-        # names; so each has a sphere of its own.
+        # The tree returns other objects than it was given. A contact names geometries, so that a body is identified by
+        # its own; each therefore has a sphere of its own.
         self._bodies = FclObjects(spheres, shared=False)
         self._numbers = {id(geometry): body for body, geometry in enumerate(self._bodies.geometries)}
         self._request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=True)

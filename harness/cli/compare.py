@@ -1,4 +1,4 @@
-"""Hold backends against each other, and against exact arithmetic, on the same poses.
+"""Compare backends with each other, and with exact arithmetic, on the same poses.
 
 The bodies of each scene fly through each other, whatever its response, and every backend is asked about every frame;
 scenes of random bodies are followed by pairs at first contact, where verdicts are hardest. Where the experiment has a

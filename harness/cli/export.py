@@ -84,9 +84,9 @@ def _json(
     comparisons: Iterable[ComparisonRecord],
     unicode: bool,
 ) -> str:
-    """One document, with what backends were held against each other where they were.
+    """One document, with the comparisons of backends where there are any.
 
-    JSON has no infinity and nothing that is not a number: such a metric is null.
+    JSON has neither infinity nor NaN: such a metric is null.
     """
     listed = list(experiments)
     document = {
@@ -104,11 +104,11 @@ def _json(
         "claims": [_verdict(experiment.name, row) for experiment in listed for row in experiment.claims],
         "expectations": [_verdict(experiment.name, row) for experiment in listed for row in experiment.expectations],
     }
-    held = [
+    compared = [
         {"experiment": found.experiment, "backends": list(found.backends), "found": found.document}
         for found in comparisons
     ]
-    document |= {"comparisons": held} if held else {}
+    document |= {"comparisons": compared} if compared else {}
     return json.dumps(document, ensure_ascii=not unicode, allow_nan=False, indent=1) + "\n"
 
 

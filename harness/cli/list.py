@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print what there is to choose from."""
+    """Print the experiments, backends, algorithms and metrics that there are."""
     import json
 
     if arguments.schema:

@@ -15,7 +15,7 @@ COMMANDS = {
     "sweep": "run experiments and keep every measurement",
     "report": "turn the measurements into pages",
     "diff": "compare two sweeps: what got slower, what changed",
-    "compare": "hold backends against each other and against exact arithmetic",
+    "compare": "compare backends with each other and with exact arithmetic",
     "trace": "print the hits of one run",
     "plan": "print what each run does, what it leaves out, and why",
     "view": "replay a run in the browser, or try settings live",

@@ -71,13 +71,13 @@ def _show(experiment: Experiment, plans: Sequence[tuple[Point, Plan]]) -> None:
             console.print(Text(f"  WARNING   {warning}", "bold red"), soft_wrap=True)
         table = Table.grid(padding=(0, 2, 0, 0))
         for stage in plan.stages:
-            fate = "keeps" if stage.kept else "leaves out"
+            decision = "keeps" if stage.kept else "leaves out"
             if console.is_terminal:
                 style = "" if stage.kept else "dim"
-                shown = Text(fate, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
+                shown = Text(decision, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
                 table.add_row("", *shown, Text(stage.why, style))
             else:
-                print(f"  {fate:10}  {stage.name:13}  {stage.why}")
+                print(f"  {decision:10}  {stage.name:13}  {stage.why}")
         if console.is_terminal:
             console.print(table)
 
@@ -91,11 +91,11 @@ def _alike(plans: Sequence[tuple[Point, Plan]]) -> Iterable[tuple[Plan, list[Poi
 
 
 def _named(experiment: Experiment, points: Sequence[Point]) -> str:
-    """The points by the values of what varies."""
+    """The points, by the values of the leaves that vary."""
     from harness.experiment.messages import flow
 
-    told = [
+    varied = [
         f"{leaf} {', '.join(dict.fromkeys(flow(point.parameters[leaf]) for point in points))}"
         for leaf in experiment.swept
     ]
-    return f": {'; '.join(told)}" if told else ""
+    return f": {'; '.join(varied)}" if varied else ""

@@ -1,4 +1,4 @@
-"""Run experiments and keep every measurement. What an earlier sweep has done is not done again.
+"""Run experiments and keep every measurement. A run that an earlier sweep has done is not done again.
 
 Exit code 1 if a run failed or an expectation does not hold, 2 if an experiment or the database is wrong.
 """
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"{left}: left out, since it is `tier: long`; --long runs it", file=sys.stderr)
     command = shlex.join(["harness", *sys.argv[1:]])
     if arguments.dry_run:
-        _foretell(chosen, meshes, arguments, command, selection)
+        _print_what_would_be_done(chosen, meshes, arguments, command, selection)
         return 0
     progress = Progress("quiet" if arguments.quiet else "verbose" if arguments.verbose else "normal")
     with Database.open(arguments.db) as database, progress:
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
             return exit_code(interruption)
         compared = _compare(chosen, meshes, database, command, arguments)
-    _say(summary, arguments)
+    _print_outcome(summary, arguments)
     for line in compared:
         print(line)
     return 1 if summary.failed else 0
@@ -142,7 +142,7 @@ def _compare(
     command: str,
     arguments: argparse.Namespace,
 ) -> list[str]:
-    """Hold backends against each other where an experiment says so, unless it was done; what was found, a line each.
+    """Compare backends where an experiment asks for it, unless that was done; the outcome, a line each pair.
 
     A library that is wrong is a finding of the report, not a failure of the sweep; `harness compare` exits 1.
     """
@@ -191,18 +191,18 @@ def _address(text: str) -> str:
     return text
 
 
-def _foretell(
+def _print_what_would_be_done(
     experiments: Sequence[Experiment],
     meshes: Mapping[Path, Mesh],
     arguments: argparse.Namespace,
     command: str,
     selection: RunSelection,
 ) -> None:
-    """What a sweep would do. Nothing is written, and no database is made."""
+    """Print what a sweep would do. Nothing is written, and no database is made."""
     import os
     from contextlib import nullcontext
 
-    from harness.runner.estimate import START_UP, spoken
+    from harness.runner.estimate import START_UP, duration_text
     from harness.runner.sweep import work_of
     from harness.store.history import history_of
 
@@ -214,7 +214,7 @@ def _foretell(
     for experiment in experiments:
         mine = [job for job in jobs if job.experiment is experiment]
         seconds = work.estimate.left(mine)
-        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else spoken(seconds)])
+        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else duration_text(seconds)])
     _print_table(["experiment", "runs to do", "time"], rows)
     backends = {job.point.engine.backend for job in jobs}
     total = work.estimate.left(jobs)
@@ -222,29 +222,29 @@ def _foretell(
     if not jobs:
         time = "nothing to do"
     elif total is None:
-        time = "no run like these was ever done, so there is no estimate of time"
+        time = "no such run was done before, so there is no estimate of time"
     else:
-        time = f"about {spoken(total + START_UP * len(backends))}, from earlier runs of {known} of them"
+        time = f"about {duration_text(total + START_UP * len(backends))}, from earlier runs of {known} of them"
     for why in work.lacking:
         print(f"points passed over: {why}")
     print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
-def _say(summary: Summary, arguments: argparse.Namespace) -> None:
+def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
     import shlex
 
-    from harness.runner.estimate import spoken
+    from harness.runner.estimate import duration_text
 
     if not arguments.quiet and summary.experiments:
         rows = []
         for name, statuses in summary.experiments.items():
             failed = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()) if status != "ok")
-            rows.append([name, str(statuses.total()), failed or "none", spoken(summary.seconds[name])])
+            rows.append([name, str(statuses.total()), failed or "none", duration_text(summary.seconds[name])])
         _print_table(["experiment", "runs", "failed", "time"], rows)
     counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
-    told = f" ({counts})" if counts else ""
-    print(f"{summary.done.total()} runs done{told}, {summary.kept.total()} kept from before")
+    by_status = f" ({counts})" if counts else ""
+    print(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
     if summary.controls:
         print(f"{summary.controls} of them done twice, as a control of the noise")
     failed_before = summary.kept.total() - summary.kept["ok"]

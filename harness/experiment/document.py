@@ -1,4 +1,4 @@
-"""A YAML document as plain values that remember where they stood.
+"""A YAML document as plain values, each with its line and column.
 
 Composed from the parser's events in one loop, so that neither depth nor size of a hostile file costs more than its
 length. Left out of YAML on purpose: tags, merge keys, several documents, keys that are not text.
@@ -89,7 +89,7 @@ def read_document(text: str | bytes, file: str) -> Document:
     Raises
     ------
     InputError
-        If there is no telling what the text holds: not UTF-8, not YAML, too large or too deep, no mapping.
+        If the text cannot be read at all: not UTF-8, not YAML, too large or too deep, no mapping.
     """
     document = _compose(_decode(text, file), file)
     if document is None:
@@ -168,7 +168,7 @@ class _Open:
     anchor: str | None
     children: dict[str | int, Node] = field(default_factory=dict)
     keys: dict[str, Place] = field(default_factory=dict)
-    key: tuple[str | None, Place] | None = None  # a mapping's key that waits for its value; None: refused
+    key: tuple[str | None, Place] | None = None  # the key whose value comes next; its text is None where refused
     size: int = 1
     height: int = 1
 
@@ -190,7 +190,7 @@ class _Composer:
     def stop(self, message: str, place: Place) -> None:
         raise InputError([*self.problems, Problem(message, self.file, *place)])
 
-    def complain(self, message: str, place: Place) -> None:
+    def add_problem(self, message: str, place: Place) -> None:
         self.problems.append(Problem(message, self.file, *place))
 
     def take(self, event: yaml.Event) -> None:
@@ -220,15 +220,15 @@ class _Composer:
             try:
                 value = resolve(value)
             except ValueError as error:
-                self.complain(printable(str(error)), place)
+                self.add_problem(printable(str(error)), place)
                 value = 1.0
         if isinstance(value, str) and any(unicodedata.category(c) in ("Cc", "Cs") and c not in "\n\t" for c in value):
-            self.complain("this text holds a control character", place)
+            self.add_problem("this text holds a control character", place)
             value = "?"
         if value == "<<" and event.implicit[0] and self._awaits_key():
             self.stop("merge keys (<<) are not supported; write the keys out", place)
         if self._awaits_key() and not isinstance(value, str):
-            self.complain(f'a key must be text; put it in quotes: "{printable(event.value)}"', place)
+            self.add_problem(f'a key must be text; put it in quotes: "{printable(event.value)}"', place)
         self._add(Node(value, place), event.anchor, place)
 
     def _alias(self, anchor: str, place: Place) -> None:
@@ -241,7 +241,7 @@ class _Composer:
 
     def _tag(self, tag: str | None, place: Place) -> None:
         if tag is not None:
-            self.complain(f"tags such as {shown(tag)} are not allowed", place)
+            self.add_problem(f"tags such as {shown(tag)} are not allowed", place)
 
     def _awaits_key(self) -> bool:
         return bool(self.stack) and isinstance(self.stack[-1].value, dict) and self.stack[-1].key is None
@@ -276,9 +276,9 @@ class _Composer:
     def _begin_key(self, parent: _Open, node: Node, place: Place) -> None:
         key: str | None = node.value if isinstance(node.value, str) else None
         if isinstance(node.value, dict | list):
-            self.complain("a key must be text", place)
+            self.add_problem("a key must be text", place)
         if key is not None and key in parent.keys:
-            self.complain(f"duplicate key {shown(key)}; the first is in line {parent.keys[key][0]}", place)
+            self.add_problem(f"duplicate key {shown(key)}; the first is in line {parent.keys[key][0]}", place)
             key = None
         parent.key = (key, place)
 
@@ -287,7 +287,7 @@ def _mark(mark: Any) -> Place:
     return mark.line + 1, mark.column + 1
 
 
-# What people most often do wrong, in their words. (Text that both parsers' problems hold -> what to say.)
+# The most frequent mistakes, in plain words: text that both parsers have in their messages -> the message of ours.
 _HINTS = {
     "mapping values are not allowed": 'a ": " stands where no key can be: mend the indentation, or quote the text',
     "found character '\\t'": "a tab cannot indent; use spaces",

@@ -1,4 +1,4 @@
-"""What can be said of the scene, its motion, the engine and the measuring: every key, its unit, range and default."""
+"""The keys of scene, motion, engine and measure: each with its unit, range and default."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ MOST_RUNS = 10**9
 
 
 class Declared(BaseModel):
-    """The manner of all models: nothing changes, nothing unknown is passed over."""
+    """The base of all models: they cannot be changed, and an unknown key is an error."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
 
 
 def refuse_conflicts(model: BaseModel, rules: tuple[Rule, ...]) -> None:
-    """Hold a model against the rules of combination; a model made in Python meets them too."""
+    """Check a model by the rules of combination; those made in Python are checked too."""
     values = {name: getattr(model, name) for name in type(model).model_fields}
     for conflict in conflicts(values, rules):
         raise wrong(conflict.message.replace("{}", str(values[conflict.leaves[-1]])))
@@ -61,7 +61,7 @@ class BodySpec(Declared):
 
 
 class SceneSpec(Declared):
-    """What flies, in which box."""
+    """The bodies, and the box around them."""
 
     mesh: Text | None = Field(
         None,

@@ -1,8 +1,8 @@
 """Cull, then decide: a broad phase finds the pairs whose bounding spheres touch, and the exact shape decides on those.
 
-Each stage of detection leaves less to the next: the spheres leave pairs that are close, the hulls those whose hulls
-overlap (for shape `hull` they decide), the search for a crossing those that it cannot prove to touch or not to, FCL the
-answer. Any broad phase of `harness.broadphase` is flown like this.
+Each stage of detection passes fewer pairs on: the bounding spheres those that are close, the hulls those whose hulls
+overlap (for shape `hull` they decide), the search for a crossing those that it can neither prove to touch nor to be
+apart, and FCL decides the rest. Any broad phase of `harness.broadphase` is used like this.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from harness.arrays import Floats, Pairs
 from harness.broadphase.pairs import BroadPhase
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
-from harness.methods.sample import TOUCHING, tetrahedron, two_bodies
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
+from harness.methods.warm_up_scene import TOUCHING, tetrahedron, two_bodies
 from harness.narrowphase.containment import Containment
 from harness.narrowphase.gjk import MARGIN
 from harness.narrowphase.hull_pairs import HullPairs
@@ -38,7 +38,7 @@ FCL_DECIDES = "what the other stages leave open would stay so"
 
 
 class Culled(SteppedMethod):
-    """Detection by a broad phase and kernels; FCL has what they cannot prove."""
+    """Detection by a broad phase and kernels; FCL decides what they cannot prove."""
 
     leaves_out: ClassVar[bool] = True
 
@@ -104,7 +104,7 @@ class Culled(SteppedMethod):
             left = "all close pairs"
         elif crossing:
             left = "what the search for a crossing leaves open"
-        decisions.take("fcl", True, f"FCL is the judge of {left}", fixed=FCL_DECIDES)
+        decisions.take("fcl", True, f"FCL decides {left}", fixed=FCL_DECIDES)
         _decide_containment(scene, hulls, decisions)
 
     def broad_phase(self, scene: Scene, plan: Plan) -> BroadPhase:
@@ -212,7 +212,7 @@ def _decide_containment(scene: Scene, hulls: bool, decisions: Decisions) -> None
         decisions.take("containment", False, "a hull is solid: inside is touching", fixed=fixed)
     elif not hulls:
         fixed = "it is asked of pairs whose hulls overlap; keep hull_axis"
-        decisions.take("containment", False, "without the hulls' verdict nobody looks for it", fixed=fixed)
+        decisions.take("containment", False, "without the hulls' verdict it is not looked for", fixed=fixed)
     elif equal_sizes(scene):
         decisions.take("containment", False, "of bodies of one size none can be inside another")
     else:

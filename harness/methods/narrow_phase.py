@@ -1,4 +1,4 @@
-"""Whether close bodies touch, by their exact shape: FCL alone, or kernels that leave to it what they cannot prove."""
+"""Whether close bodies touch, by their exact shape: by FCL alone, or by kernels, and FCL where they cannot prove it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from harness.scene.scene import Scene
 # A convex mesh may lie within its hull by 1e-9 of its diameter: its hull decides where it is by more.
 ON_HULL = 1e-8
 
-# Twice the area of a hull's face, of diameter 1, from which on its normal can be told to 1e-6.
+# Twice the area of a face, of a hull of diameter 1, above which its normal is known to 1e-6.
 SLIVER = 1e-10
 
 
@@ -96,7 +96,7 @@ class HullNarrowPhase:
 
 
 class MeshNarrowPhase:
-    """Drops meshes whose hulls are proved separate, and settles the surfaces of the others; FCL has what is left.
+    """Drops pairs whose hulls are proved separate and decides on the surfaces of the others; FCL decides the rest.
 
     Parameters
     ----------

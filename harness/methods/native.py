@@ -1,4 +1,4 @@
-"""A backend's own pipeline, whole: of its stages nothing is known that could be left out."""
+"""A backend's own pipeline as a whole: its stages are not known, so that none can be left out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Watches a stepped run from outside its clocks: hits, contacts, errors, and a log of the hits if asked for.
+"""Measures a stepped run outside of its clocks: hits, contacts, errors, and a log of the hits if asked for.
 
 With a response, a hit is a contact that was answered. Without (`none`), a hit is the onset of touching: the first of
 the consecutive frames that see a pair touch.
@@ -18,7 +18,7 @@ from harness.scene.scene import Scene
 
 
 class Observer:
-    """Counts what the frames of a run show.
+    """Counts hits and contacts, and measures errors, frame by frame.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class Observer:
         return int(np.count_nonzero(self._outside))
 
     def frame(self, time: float, pairs: Pairs, hits: Flags, walls: Ints | Flags) -> None:
-        """Take note of one frame.
+        """Observe one frame.
 
         Parameters
         ----------
@@ -75,12 +75,12 @@ class Observer:
         self.conservation.observe(self._trajectory.velocities)
 
     def repeat(self, pairs: Pairs, times: int) -> None:
-        """Take note of frames that are like the last one, in which nothing was answered."""
+        """Count frames that are equal to the last one, in which no pair was answered."""
         self.pair_contacts += times * len(pairs)
 
 
 class Folds:
-    """Tells which walls the folded paths have met since the frame before."""
+    """Counts the walls that the folded paths have met since the frame before."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         self._trajectory = trajectory
@@ -95,7 +95,7 @@ class Folds:
 
 
 class Onsets:
-    """Tells which touching pairs did not touch in the frame before."""
+    """Finds the touching pairs that did not touch in the frame before."""
 
     def __init__(self, count: int) -> None:
         self._count = count

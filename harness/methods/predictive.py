@@ -20,9 +20,9 @@ from harness.measure.kinetics import Kinetics
 from harness.methods.culled import equal_sizes
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.penetration import Penetration
-from harness.methods.sample import RESPONSES, TOUCHING, two_bodies
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import decide_penetration, decide_recording
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
 from harness.motion.course import CourseLog
 from harness.motion.finite import require_finite_state
 from harness.motion.hits import Outcome, Trace
@@ -35,7 +35,7 @@ from harness.motion.predictive.solids import Form, needs_its_surface
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
-# How often a run is looked at from outside its clock; events are the same to the bit however often.
+# How often the state of a run is measured outside of its clock; events are the same to the bit however often.
 LOOKS = 5
 
 _FIXED = "event-driven motion cannot do otherwise"
@@ -109,7 +109,7 @@ def _neighbour_lists(scene: Scene, law: MotionLaw, decisions: Decisions) -> None
     if listed:
         why = f"at packing {scene.packing:.3g} bodies stay among their neighbours: these are listed"
     else:
-        why = "neighbours come from cells: lists serve a dense crowd of one size that answers its hits"
+        why = "neighbours come from cells: lists pay at high packing, for bodies of one size that answer their hits"
     decisions.take("neighbour_lists", listed, why, fixed="times of hits would differ in their last digits")
 
 
@@ -187,7 +187,7 @@ class EventDriven:
 
 
 class _Watch:
-    """Looks at a run now and then, outside of its clock: what it conserves, who escapes, how deep bodies overlap."""
+    """Measures a run at a few times, outside of its clock: what it conserves, escaped bodies, the depth of overlaps."""
 
     def __init__(self, scene: Scene, plan: Plan, law: MotionLaw) -> None:
         self._elastic, self._half = law.response == "elastic", scene.box.half
@@ -198,7 +198,7 @@ class _Watch:
         self._begun = False
 
     def look(self, simulation: Simulation, time: float) -> None:
-        """Take note of the state at a time, s."""
+        """Measure the state at a time, s."""
         positions, velocities = simulation.positions, simulation.velocities
         require_finite_state(positions, velocities, simulation.time)
         self._conservation.observe(velocities)
@@ -212,7 +212,7 @@ class _Watch:
             self._begun = True
 
     def metrics(self, simulation: Simulation) -> dict[str, float]:
-        """What has come of it."""
+        """The errors and the kinetics measured."""
         found = {
             "energy_drift": self._conservation.energy_drift,
             "escaped": float(np.count_nonzero(self._outside)),
@@ -226,7 +226,7 @@ class _Watch:
 
 
 class _Depth:
-    """The deepest overlap found by looking now and then."""
+    """The deepest overlap of those times."""
 
     def __init__(self, scene: Scene) -> None:
         self.deepest = 0.0

@@ -50,6 +50,14 @@ class StageError(InputError):
 class Decisions:
     """Decides on one stage after another, in the order of the pipeline.
 
+    >>> decisions = Decisions({"hull_axis": False})
+    >>> decisions.take("sphere_cull", True, "only close pairs go on")
+    True
+    >>> decisions.take("hull_axis", True, "hulls decide on close pairs")
+    False
+    >>> sorted(decisions.finish().kept)
+    ['sphere_cull']
+
     Parameters
     ----------
     forced : stages forced on (True) or off (False), for an ablation

@@ -1,4 +1,4 @@
-"""Methods that look at frames: what their plans have in common, and how the plan becomes a pipeline.
+"""Methods that step from frame to frame: what their plans have in common, and how the plan becomes a pipeline.
 
 A frame moves the bodies, finds all touching pairs, answers them, then the walls. How the pairs are found is each
 method's own (`detector`); everything around it is decided and assembled here.
@@ -13,17 +13,17 @@ from typing import ClassVar
 
 from harness.arrays import Floats, Pairs
 from harness.methods.method import Method, Pipeline, WarmUp
-from harness.methods.sample import RESPONSES, TOUCHING, two_bodies
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepping import Detector, Stepping
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
 from harness.motion.law import MotionLaw
-from harness.motion.reach import nobody_meets, nobody_moves, walls_are_out_of_reach
+from harness.motion.reach import all_at_rest, no_pair_can_meet, walls_are_out_of_reach
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
 
 class SteppedMethod(Method):
-    """A method that looks at frames.
+    """A method that steps from frame to frame.
 
     Attributes
     ----------
@@ -83,15 +83,17 @@ class SteppedMethod(Method):
         yield f"frames of {shape}s", partial(_fly_frames, shape)
 
     def _motion(self, scene: Scene, decisions: Decisions) -> None:
-        if not nobody_moves(scene):
+        if not all_at_rest(scene):
             fixed = "bodies move"
-            decisions.take("motion", True, "bodies move: every frame places them and looks anew", fixed=fixed)
+            decisions.take(
+                "motion", True, "bodies move: every frame places them and finds their pairs anew", fixed=fixed
+            )
         elif self.leaves_out:
-            why = "nobody moves: bodies are placed once and their pairs found once, for all frames"
+            why = "no body moves: bodies are placed once and their pairs found once, for all frames"
             decisions.take("motion", False, why)
         else:
             who = "brute force" if self.tests_everything else self.name.backend
-            why = f"nobody moves, but {who} is asked about every frame"
+            why = f"no body moves, but {who} is asked about every frame"
             decisions.take(
                 "motion",
                 True,
@@ -107,7 +109,7 @@ class SteppedMethod(Method):
             decisions.take("pairs", False, why, fixed=why)
             self.no_detection(why, decisions, fixed=why)
             return False
-        if self.leaves_out and nobody_meets(scene, flown):
+        if self.leaves_out and no_pair_can_meet(scene, flown):
             why = f"no two of {count} bodies can meet in {flown:g} s at their speeds"
             if not decisions.take("pairs", False, why):
                 self.no_detection(why, decisions, fixed="no pair is tested; keep pairs")
@@ -124,7 +126,7 @@ class SteppedMethod(Method):
             kept = decisions.take("walls", False, why, fixed="nothing would answer them")
         elif not len(scene.bodies):
             kept = decisions.take("walls", False, "there is no body", fixed="there is nothing to test")
-        elif not everything and walls_are_out_of_reach(scene, flown, law.response, alone=not pairs):
+        elif not everything and walls_are_out_of_reach(scene, flown, law.response, no_pairs=not pairs):
             kept = decisions.take("walls", False, f"no body can get to a wall in {flown:g} s")
         else:
             shapes = "spheres" if scene.shape == "sphere" else "the support function of the hull"
@@ -184,7 +186,7 @@ def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
 
 
 class _AlwaysTouching:
-    """Stands for a detector where only what is around it is to be compiled: the two bodies always touch."""
+    """A detector for the warm-up, which compiles only what is around it: the two bodies always touch."""
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         return TOUCHING

@@ -180,7 +180,7 @@ def _steps(
 def _look(
     observer: Observer, trajectory: Trajectory, response: CollisionResponse | None, course: CourseLog | None
 ) -> Callable[[_Frame], None]:
-    """What is done with a frame after it, outside of all clocks."""
+    """What observes a frame after it, outside of all clocks."""
 
     def answered(frame: _Frame) -> None:
         observer.frame(frame.time, frame.pairs, frame.hits, frame.walls)

@@ -8,13 +8,13 @@ from harness.arrays import Floats
 
 
 class NotFiniteError(Exception):
-    """Something that must be a finite number is none."""
+    """A number that must be finite is not."""
 
 
 def require_finite_state(positions: Floats, velocities: Floats, time: float) -> None:
     """Raise unless every place and velocity, (n, 3) m and m/s at `time` (s), is finite.
 
-    Comparisons with what is not a number are false, so that nothing else of a run might notice.
+    Comparisons with NaN are false, so that no other check of a run might notice.
 
     Raises
     ------

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 CONNECT_TIMEOUT = 30.0  # s for the scheduler to answer
 WORKER_TIMEOUT = 120.0  # s for the first worker to join
 AHEAD = 2  # jobs handed out for each slot, so that no slot waits for the next
-DEATHS = 5  # of workers with the same run in hand, until the run is held to be the reason
-LOOK_EVERY = 5.0  # s between looks at who is there
+DEATHS = 5  # workers that die with the same run, until the run is taken for the reason
+LOOK_EVERY = 5.0  # s between checks of which workers there are
 LOCAL = "local:"
 
 
@@ -52,7 +52,7 @@ class Cluster:
     Raises
     ------
     InputError
-        The extra is not installed, nobody answers, or a worker runs another version of the program.
+        The extra is not installed, no scheduler answers, or a worker runs another version of the program.
     """
 
     def __init__(self, address: str) -> None:
@@ -80,7 +80,7 @@ class Cluster:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if kind is not None and self._sent:  # runs that nobody waits for any more
+        if kind is not None and self._sent:  # the results of these runs are not wanted any more
             with suppress(Exception):
                 self._client.cancel(list(self._sent), force=True)
                 self._client.run(stop_here, on_error="ignore")
@@ -102,7 +102,7 @@ class Cluster:
                 yield self._done(self._sent.pop(future), future)
 
     def _submit(self, job: Job, meshes: Mapping[Path, Mesh], contents: dict[str, Future]) -> Future:
-        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, asked=job.asked)
+        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, on_demand=job.on_demand)
         if mesh is not None and mesh.digest not in contents:
             # as a task, not as scattered data: it can be made again when the worker that holds it dies
             contents[mesh.digest] = self._client.submit(_itself, mesh, key=f"mesh-{mesh.digest}")
@@ -203,7 +203,7 @@ class Cluster:
 
 @contextmanager
 def _inherited_by_children(number: signal.Signals, disposition: signal.Handlers) -> Iterator[None]:
-    """What processes started meanwhile do about a signal; only a program's main thread can say it."""
+    """How processes that are started meanwhile handle a signal; only a program's main thread can set that."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

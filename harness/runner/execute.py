@@ -47,7 +47,7 @@ def execute(
     memory: int | None = None,
     traced: bool = False,
     recorded: bool = False,
-    asked: Collection[str] = (),
+    on_demand: Collection[str] = (),
 ) -> Result:
     """Run a point once, in this process.
 
@@ -58,7 +58,7 @@ def execute(
     memory : B that the scene may need
     traced : keep every hit
     recorded : keep what a replay shows, and measure nothing else: the clocks of such a run see it
-    asked : metrics that are made on demand alone, and are demanded
+    on_demand : metrics to measure that are measured on demand alone
 
     Raises
     ------
@@ -80,7 +80,7 @@ def execute(
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
     if recorded:
         return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome))
-    metrics |= invariance(asked, scene, partial(_hits_as_planned, method, plan, law))
+    metrics |= invariance(on_demand, scene, partial(_hits_as_planned, method, plan, law))
     if point.reference is not None and not traced:
         metrics |= accuracy.errors(point, mesh, outcome.trace or hits(point, scene), hits)
     metrics |= from_outcome(scene, replace(outcome, metrics=metrics))

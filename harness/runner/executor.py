@@ -73,6 +73,8 @@ class LocalExecutor:
         """See `Executor`."""
         for job in jobs:
             before(job)
-            task, mesh = task_of(job.experiment, job.point, meshes, pinned=True, recorded=job.recorded, asked=job.asked)
+            task, mesh = task_of(
+                job.experiment, job.point, meshes, pinned=True, recorded=job.recorded, on_demand=job.on_demand
+            )
             started = datetime.now(timezone.utc)
             yield FinishedJob(job, self._servers.run(task, mesh), timing_grade=True, started=started)

@@ -65,7 +65,12 @@ def _reported(task: Task, mesh: Mesh | None) -> bytes:
     try:
         try:
             result = execute(
-                task.point, mesh, memory=task.memory, traced=task.traced, recorded=task.recorded, asked=task.asked
+                task.point,
+                mesh,
+                memory=task.memory,
+                traced=task.traced,
+                recorded=task.recorded,
+                on_demand=task.on_demand,
             )
             report = Report(
                 "ok",

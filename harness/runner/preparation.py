@@ -1,4 +1,4 @@
-"""Before any run: load experiments, open their meshes in one limited child, and say all that is wrong at once."""
+"""Before any run: load experiments, open their meshes in one limited child process, and report all problems at once."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from harness.scene.mesh_child import open_meshes
 
 
 class Prepared(NamedTuple):
-    """Experiments without a fault, their meshes by file, and the faults of the others."""
+    """The valid experiments, their meshes by file, and the problems of the others."""
 
     experiments: list[Experiment]
     meshes: dict[Path, Mesh]
@@ -59,14 +59,14 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
         except InputError as error:
             problems += error.problems
     meshes, broken = _open_meshes(loaded)
-    sound = []
+    valid = []
     for experiment in loaded:
         found = [*_names(experiment), *_mesh_problems(experiment, broken), *_namesakes(experiment, loaded)]
         found = found or list(_forced(experiment, meshes))
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
-            sound.append(experiment)
-    return Prepared(sound, meshes, list(dict.fromkeys(problems)))
+            valid.append(experiment)
+    return Prepared(valid, meshes, list(dict.fromkeys(problems)))
 
 
 def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], dict[Path, str]]:

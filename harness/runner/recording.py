@@ -62,6 +62,13 @@ def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
     Returns
     -------
     The key, or None where no run is small enough.
+
+    Examples
+    --------
+    >>> points = {"point": ["few", "many"], "count": [5, 50]}
+    >>> runs = pd.DataFrame({**points, "status": "ok", "events": 9, "run_seconds": 0.1})
+    >>> worth_recording(["few", "many"], runs)
+    'many'
     """
     if not {"events", "count", "run_seconds"}.issubset(runs.columns):
         return None

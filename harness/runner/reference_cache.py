@@ -1,7 +1,7 @@
-"""References kept between runs: one file each, named by what it was made from, so that a stale one is never found.
+"""References kept between runs: one file each, named by a hash of what it was made from, so that none is ever stale.
 
-The points of a sweep share them, whichever process makes one first. A file appears whole or not at all, and whoever is
-killed while making one leaves nothing that counts. Where files cannot be kept, references are made anew.
+The points of a sweep share them, whichever process makes one first. A file appears whole or not at all, also when its
+process is killed. Where files cannot be kept, references are made anew.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from harness.kernel_cache import user_cache
 
 Arrays = Mapping[str, NDArray[Any]]
 
-UNUSED = 30 * 86400.0  # s after which a reference that nobody asked for is forgotten
+UNUSED = 30 * 86400.0  # s after which a reference that was not used is removed
 
 
 def folder() -> Path | None:

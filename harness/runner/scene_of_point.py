@@ -11,9 +11,9 @@ from harness.scene.launch import directions, orientations, place
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
-# Sizes drawn to tell the packing of a scene; of more bodies than that a sample tells it.
+# The most sizes drawn to compute the packing of a scene; of more bodies, a sample is drawn.
 MOST_DRAWN = 10**6
-# Bytes a body needs at the least in arrays of poses, velocities and neighbours; enough to refuse the impossible.
+# Bytes that a body needs at the least, for poses, velocities and neighbours: enough to refuse what cannot fit.
 BYTES_A_BODY = 500
 
 

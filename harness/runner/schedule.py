@@ -24,7 +24,7 @@ from harness.vocabulary import METHOD_LEAVES
 class Job:
     """One run to do: a repeat of a point, for the first experiment that lists it; or its control, or its recording.
 
-    `asked` are the metrics made on demand that any of the experiments names that list it.
+    `on_demand` are the metrics measured on demand alone that one of the experiments that list the point names.
     """
 
     experiment: Experiment
@@ -32,7 +32,7 @@ class Job:
     key: str
     repeat: int
     control: bool = False
-    asked: frozenset[str] = frozenset()
+    on_demand: frozenset[str] = frozenset()
     recorded: bool = False
 
 
@@ -52,7 +52,7 @@ class RunSelection:
     only: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
     def wants(self, parameters: Mapping[str, Any]) -> bool:
-        """Whether a point with these leaves and derived parameters is asked for."""
+        """Whether a point with these leaves and derived parameters is to be run."""
         return all(any(_same(parameters.get(leaf), value) for value in values) for leaf, values in self.only.items())
 
 

@@ -1,4 +1,4 @@
-"""A warm server: a process with everything that its backend's runs need imported and compiled, which forks once a run.
+"""A warm server: a process that has imported and compiled what the runs of its backend need, and forks for each run.
 
 `python -m harness.runner.server FD BACKEND` is the server; it speaks through the socket FD, which it inherits. Each run
 happens in a process forked from it (`harness.runner.isolation`), so that a backend that crashes, hangs, fills the

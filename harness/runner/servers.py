@@ -117,20 +117,20 @@ def task_of(
     traced: bool = False,
     pinned: bool = False,
     recorded: bool = False,
-    asked: frozenset[str] | None = None,
+    on_demand: frozenset[str] | None = None,
 ) -> tuple[Task, Mesh | None]:
     """A run of a point under the limits of its experiment, and the mesh that it needs.
 
-    `asked` are the metrics to make that are made on demand alone; without, those that the experiment names.
+    `on_demand` are the metrics to measure that are measured on demand alone; without, those the experiment names.
     """
     mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
-    asked = asked_of(experiment) if asked is None else asked
+    on_demand = on_demand_of(experiment) if on_demand is None else on_demand
     digest = mesh.digest if mesh else None
-    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, asked), mesh
+    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, on_demand), mesh
 
 
-def asked_of(experiment: Experiment) -> frozenset[str]:
-    """The metrics that an experiment names and that are made on demand alone."""
+def on_demand_of(experiment: Experiment) -> frozenset[str]:
+    """The metrics that an experiment names and that are measured on demand alone."""
     return experiment.metrics & ON_DEMAND
 
 

@@ -27,7 +27,7 @@ from harness.runner.key import point_key
 from harness.runner.recording import worth_recording
 from harness.runner.scene_of_point import derived_parameters
 from harness.runner.schedule import Job, RunSelection, Schedule, schedule
-from harness.runner.servers import Servers, asked_of, mesh_of, task_of
+from harness.runner.servers import Servers, mesh_of, on_demand_of, task_of
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
 from harness.store.database import Database
@@ -122,7 +122,7 @@ def work_of(
     """
     keys: dict[int, str] = {}
     parameters: dict[str, dict[str, Any]] = {}
-    asked: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
+    on_demand: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
     backends = sorted({point.engine.backend for experiment in experiments for point in experiment.points})
     lacking = {name: why for name in backends if (why := missing(name)) is not None}
     for experiment in experiments:
@@ -130,7 +130,7 @@ def work_of(
             mesh = mesh_of(experiment, point, meshes)
             key = keys[id(point)] = point_key(point, mesh)
             parameters[key] = _parameters(point, mesh)
-            asked[key] |= asked_of(experiment)
+            on_demand[key] |= on_demand_of(experiment)
     wanted = {key for key, found in parameters.items() if selection.wants(found)}
     if selection.only and parameters and not wanted:
         raise InputError("--only: no point of these experiments has these values")
@@ -141,10 +141,10 @@ def work_of(
     else:
         sweeps = history.unfinished_sweeps(command) if selection.fresh else None
         status, controlled = history.done(parameters, sweeps), history.controlled(parameters, sweeps)
-        for key, repeat in history.lacking_metrics(asked):
+        for key, repeat in history.lacking_metrics(on_demand):
             status[key].pop(repeat, None)
     found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=selection.retry)
-    jobs = [job if job.control else replace(job, asked=asked[job.key]) for job in found.jobs]
+    jobs = [job if job.control else replace(job, on_demand=on_demand[job.key]) for job in found.jobs]
     found = found._replace(jobs=jobs)
     estimate = Estimate(history.durations() if history else {}, parameters)
     return Work(keys, wanted, found, estimate, list(lacking.values()))

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.experiment.experiment import Point
 from harness.methods.method import WarmUp
-from harness.methods.sample import two_bodies
+from harness.methods.warm_up_scene import two_bodies
 from harness.reference.warm_up import warm_up_reference
 from harness.runner import accuracy
 from harness.runner.point import method_of_point
@@ -41,18 +41,18 @@ def warm_up(point: Point) -> bool:
 
 def warm_ups(point: Point) -> Iterator[WarmUp]:
     """What has to be compiled before a run of a point."""
-    yield "placement", _place
+    yield "placement", _compile_placement
     yield from method_of_point(point).warm_ups()
     if point.reference is not None:
         shape = point.reference.shape
-        yield f"reference of {shape}s", partial(_refer, shape)
+        yield f"reference of {shape}s", partial(_compile_reference, shape)
         if point.motion.response != "none":  # the reference has to be flown
             yield from method_of_point(accuracy.reference_point(point)).warm_ups()
 
 
-def _place() -> None:
+def _compile_placement() -> None:
     place(np.full(2, 0.5), Box(np.full(3, 1.2)), np.random.default_rng(0), overlap=False)
 
 
-def _refer(shape: Shape) -> None:
+def _compile_reference(shape: Shape) -> None:
     warm_up_reference(two_bodies(shape))

@@ -49,6 +49,15 @@ def convex_hull(points: NDArray[np.float64]) -> Hull:
     ------
     InputError
         If the points are too few or too flat to enclose a volume.
+
+    Examples
+    --------
+    Of the corners of a cube and its centre, the centre is no vertex of the hull:
+
+    >>> corners = [[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]
+    >>> hull = convex_hull(np.array([*corners, [0.0, 0.0, 0.0]]))
+    >>> len(hull.vertices), len(hull.faces)
+    (8, 12)
     """
     from scipy.spatial import ConvexHull, QhullError  # half a second, which a run whose mesh is at hand need not spend
 

@@ -25,8 +25,8 @@ class Scene:
     mesh : the mesh all bodies share; None only for spheres
     bodies : as they are at time 0
     box : closed, centred at the origin
-    hulls : by the size of a body in m, its hull in m, where it is not to be that of the mesh: so that every backend of
-        a comparison gets the very hull that one of them makes of it
+    hulls : by the size of a body in m, its hull in m, where it replaces that of the mesh: in a comparison every backend
+        then gets the hull that one of them has made
     """
 
     shape: Shape

@@ -1,4 +1,4 @@
-"""Backends that are extras: sound where they are installed, and named with the command that brings them where not."""
+"""Backends that are extras: right where they are installed, and named with the command that brings them where not."""
 
 import json
 import os

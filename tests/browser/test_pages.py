@@ -1,4 +1,4 @@
-"""Every page of a report in a real browser: whole, without a network, readable at any width and by anybody."""
+"""Every page of a report in a real browser: whole, without a network, readable at any width, and accessible."""
 
 import pytest
 

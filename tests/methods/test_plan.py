@@ -11,7 +11,7 @@ from harness.methods.culled import DETECTION
 from harness.methods.stages import StageError
 from harness.methods.stepping import Stepping
 from harness.motion.law import MotionLaw
-from harness.motion.reach import SLACK, fastest, nobody_meets
+from harness.motion.reach import SLACK, fastest, no_pair_can_meet
 from harness.scene.box import Box
 from harness.scene.mesh_file import make_mesh
 from harness.scene.scene import Scene
@@ -161,11 +161,11 @@ def test_a_convex_mesh_of_one_size_is_judged_by_its_hull_alone():
     assert stages(pumpkins)["crossing"].kept
 
 
-def test_pairs_are_left_out_just_where_nobody_can_meet():
+def test_pairs_are_left_out_just_where_no_pair_can_meet():
     """Head on, 1 m of gap at 1 m/s each: they meet after half a second, and not before."""
-    assert nobody_meets(two(1.0, 1.0), 0.5 * (1 - 1e-6))
-    assert not nobody_meets(two(1.0, 1.0), 0.5)
-    assert not nobody_meets(two(0.0), 0.0)  # they touch
+    assert no_pair_can_meet(two(1.0, 1.0), 0.5 * (1 - 1e-6))
+    assert not no_pair_can_meet(two(1.0, 1.0), 0.5)
+    assert not no_pair_can_meet(two(0.0), 0.0)  # they touch
     assert not stages(two(1.0, 1.0), duration=0.49)["pairs"].kept
     assert stages(two(1.0, 1.0), "brute-force", duration=0.49)["pairs"].kept
 

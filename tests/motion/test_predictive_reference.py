@@ -80,7 +80,7 @@ def test_a_scene_without_events_has_none():
 
 
 @pytest.mark.parametrize("n", [0, 1])
-def test_nobody_and_a_single_sphere_fly_too(n):
+def test_no_body_and_a_single_sphere_are_runs_too(n):
     simulation = Simulation(np.zeros((n, 3)), np.ones((n, 3)), np.full(n, 0.5), np.ones(n), [1.5, 1.5, 1.5])
     simulation.advance(10.0)
     assert simulation.counters["pair_hits"] == 0

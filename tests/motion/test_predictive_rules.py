@@ -1,4 +1,4 @@
-"""Overlaps, walls, ties, bursts, sampling, recording: the rules that keep a run sound."""
+"""Overlaps, walls, ties, bursts, sampling, recording: the rules that keep a run right."""
 
 import numpy as np
 import pytest
@@ -111,7 +111,7 @@ def test_touching_spheres_that_slide_along_each_other_do_not_stall():
 
 @pytest.mark.parametrize("speed", [1.0, 1e6, 1e12])
 @pytest.mark.parametrize("response", ["elastic", "reflect", "none"])
-def test_nobody_leaves_the_box_whatever_the_speed(speed, response):
+def test_no_centre_leaves_the_box_whatever_the_speed(speed, response):
     rng = np.random.default_rng(4)
     positions = rng.uniform(-2, 2, (20, 3))
     velocities = rng.normal(size=(20, 3))

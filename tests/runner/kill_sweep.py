@@ -1,4 +1,4 @@
-"""Kills a sweep at random moments, as often as asked, and checks each time that nothing finished was lost.
+"""Kills a sweep at random moments, as often as on_demand, and checks each time that nothing finished was lost.
 
     python tests/runner/kill_sweep.py [KILLS]
 

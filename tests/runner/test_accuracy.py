@@ -119,7 +119,7 @@ def test_a_damaged_or_unfinished_reference_is_made_again(cache):
     assert not list(cache.folder().glob("*.part"))
 
 
-def test_a_point_with_a_reference_is_another_than_without_and_nobody_else_measures_errors():
+def test_a_point_with_a_reference_is_another_than_without_and_no_other_measures_errors():
     plain = GAS.replace(", reference: {algorithm: predictive, tolerance: 1.0e-10}", "")
     assert point_key(points()[0], None) != point_key(points(plain)[0], None)
     assert "missed_hits" not in metrics(plain)

@@ -236,7 +236,7 @@ def of_version(version: int) -> Callable[[Path], None]:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "complaint"),
+    ("spoil", "message"),
     [
         (corrupt, "is damaged"),
         (truncated, "is damaged"),
@@ -247,12 +247,12 @@ def of_version(version: int) -> Callable[[Path], None]:
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_and_left_as_it_is(
-    path: Path, spoil: Callable[[Path], None], complaint: str
+    path: Path, spoil: Callable[[Path], None], message: str
 ) -> None:
     spoil(path)
     before = path.read_bytes()
     for use in (Database.open, tables.runs, tables.experiments, tables.sweeps):
-        with pytest.raises(InputError, match=complaint) as caught:
+        with pytest.raises(InputError, match=message) as caught:
             use(path)
         assert str(caught.value).startswith(f"{path}: ")
         assert "nothing was changed" in str(caught.value)

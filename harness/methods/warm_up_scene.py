@@ -1,4 +1,4 @@
-"""Two bodies that spin and are about to meet: what kernels are compiled with, before any run."""
+"""The scene that kernels are compiled with before any run: two bodies that spin and are about to meet."""
 
 from __future__ import annotations
 

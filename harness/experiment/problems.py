@@ -1,4 +1,4 @@
-"""Everything that is wrong with one experiment, gathered before any of it is said."""
+"""Everything that is wrong with one experiment, gathered so that it is reported at once."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from harness.errors import InputError, Problem
 from harness.experiment.document import KEY, Document, KeyPath
 from harness.experiment.messages import flow, printable, sentence
 
-MOST_SAID = 100
+MOST_REPORTED = 100
 LISTS_OF_ROWS = ("zip", "exclude", "include", "expect", "claims", "rows", "bodies")
 
 
 @dataclass(frozen=True)
 class Override:
-    """A leaf set from outside the file: the text it was set with, or the value where Python set it."""
+    """A leaf that was set outside of the file: with `--set`, whose text is given, or from Python, with its value."""
 
     leaf: str
     given: Any
@@ -31,16 +31,16 @@ class Override:
 Origin = KeyPath | Override
 
 
-class Complaints:
-    """Problems of one file, by where the wrong values come from."""
+class FileProblems:
+    """The problems found in one file, each with the place of the wrong value."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.problems = list(document.problems)
+        self.found = list(document.problems)
 
     def add(self, origin: Origin, message: str) -> None:
         """Keep a problem with the value from `origin`."""
-        self.problems.append(problem_at(self.document, origin, message))
+        self.found.append(problem_at(self.document, origin, message))
 
     def add_errors(self, origin: Origin, error: ValidationError, model: Any = None) -> None:
         """Keep all that pydantic found wrong with the value from `origin`."""
@@ -56,13 +56,13 @@ class Complaints:
 
     def raise_any(self) -> None:
         """Raise all problems in the order of the file, as one `InputError`, if there are any."""
-        if not self.problems:
+        if not self.found:
             return
-        ordered = sorted(dict.fromkeys(self.problems), key=lambda problem: (problem.line or 0, problem.column or 0))
-        if len(ordered) > MOST_SAID:
-            first = ordered[MOST_SAID]
-            rest = f"and {len(ordered) - MOST_SAID} problems more, from here on"
-            ordered = [*ordered[:MOST_SAID], Problem(rest, first.file, first.line, first.column)]
+        ordered = sorted(dict.fromkeys(self.found), key=lambda problem: (problem.line or 0, problem.column or 0))
+        if len(ordered) > MOST_REPORTED:
+            first = ordered[MOST_REPORTED]
+            rest = f"and {len(ordered) - MOST_REPORTED} problems more, from here on"
+            ordered = [*ordered[:MOST_REPORTED], Problem(rest, first.file, first.line, first.column)]
         raise InputError(ordered)
 
 
@@ -75,7 +75,7 @@ def problem_at(document: Document, origin: Origin, message: str) -> Problem:
 
 
 def _subject(path: KeyPath) -> str:
-    """What a sentence about the value at a path is about: its key, or a row of one of the lists of rows."""
+    """The subject of a sentence about the value at a path: its key, or a row of one of the lists of rows."""
     keys = [step for step in path if isinstance(step, str) and step != KEY]
     row = "a row of " if path and isinstance(path[-1], int) and keys[-1] in LISTS_OF_ROWS else ""
     return f"{row}{printable(keys[-1])} " if keys else ""
