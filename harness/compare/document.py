@@ -36,7 +36,7 @@ class Reduced:
     @property
     def name(self) -> str:
         """Of a file for it, without number and suffix."""
-        return "-".join(self.case.backends)
+        return "-".join(self.case.backends).replace("/", "-")
 
 
 def reduced(found: Comparison, mesh_name: dict[int, str], most: int) -> list[Reduced]:
