@@ -93,8 +93,7 @@ class Channel:
 
     def send(self, content: bytes) -> None:
         """Send a message."""
-        self._socket.sendall(_LENGTH.pack(len(content)))
-        self._socket.sendall(content)
+        _send(self._socket, content)
 
     def receive(self) -> bytes | None:
         """The next message, whenever it comes; None if the parent has closed its end."""
@@ -109,6 +108,15 @@ class Channel:
                 return None
             content += chunk
         return bytes(content)
+
+
+def _send(end: socket.socket, content: bytes) -> None:
+    head = _LENGTH.pack(len(content))
+    if len(content) > _CHUNK:  # a large one is not copied
+        end.sendall(head)
+        end.sendall(content)
+    else:  # the other side wakes up once
+        end.sendall(head + content)
 
 
 class Child:
@@ -192,7 +200,7 @@ class Child:
         deadline = time.monotonic() + seconds
         self._socket.settimeout(seconds)
         try:
-            self._socket.sendall(_LENGTH.pack(len(content)) + content)
+            _send(self._socket, content)
         except TimeoutError:
             return "timeout"
         except ConnectionError:
