@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import floor, inf, sqrt
+from math import floor, inf
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.kernel import kernel
 from harness.measure.contacts import Contacts, of_spheres
 from harness.motion.kinematics import Flight
+from harness.narrowphase.spheres import passage
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
@@ -225,36 +226,6 @@ def _straight(
             )
             later = min(later, _fold_time(first[body, axis], period[body, axis], leg + 1))
     return places, speeds, later
-
-
-@kernel
-def passage(gap: Floats, velocity: Floats, reach: float) -> tuple[float, float]:
-    """From when until when |gap + velocity t| <= reach, s, over all of time; (inf, -inf) if never.
-
-    Parameters
-    ----------
-    gap, velocity : (3,) float arrays, m and m/s
-    reach : m
-    """
-    b = gap[0] * velocity[0] + gap[1] * velocity[1] + gap[2] * velocity[2]
-    vv = velocity[0] ** 2 + velocity[1] ** 2 + velocity[2] ** 2
-    distance = sqrt(gap[0] ** 2 + gap[1] ** 2 + gap[2] ** 2)
-    c = (distance - reach) * (distance + reach)
-    if vv == 0.0:
-        return (-inf, inf) if c <= 0.0 else (inf, -inf)
-    # |gap x velocity|² instead of b² - v² c, and c by its factors: exact from afar and near contact
-    x = gap[1] * velocity[2] - gap[2] * velocity[1]
-    y = gap[2] * velocity[0] - gap[0] * velocity[2]
-    z = gap[0] * velocity[1] - gap[1] * velocity[0]
-    discriminant = vv * (reach * reach) - (x * x + y * y + z * z)
-    if discriminant < 0.0:
-        return inf, -inf
-    root = sqrt(discriminant)
-    if b < 0.0:
-        return c / (root - b), (root - b) / vv
-    if root + b == 0.0:
-        return 0.0, 0.0
-    return -(root + b) / vv, -c / (root + b)
 
 
 @kernel

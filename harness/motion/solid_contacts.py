@@ -15,9 +15,9 @@ from harness.errors import InputError
 from harness.measure.contacts import Contacts
 from harness.motion.encounters import Paths, sphere_contacts
 from harness.motion.kinematics import turn
-from harness.narrowphase.advancement import Motion
 from harness.narrowphase.contact_intervals import Contacts as Intervals
 from harness.narrowphase.contact_intervals import hull_contacts, mesh_contacts
+from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import mesh_shape
 from harness.narrowphase.support import support_map
 from harness.scene.mesh import Mesh

@@ -5,7 +5,6 @@ from __future__ import annotations
 from harness.kernel import step
 from harness.motion.predictive.burst import note_hit
 from harness.motion.predictive.clock import catch_up
-from harness.motion.predictive.numerics import approaches
 from harness.motion.predictive.response import bounce, flip
 from harness.motion.predictive.state import (
     BOX_HITS,
@@ -29,6 +28,7 @@ from harness.motion.predictive.state import (
     X,
 )
 from harness.motion.predictive.tally import absolute, add
+from harness.narrowphase.spheres import approaches
 
 
 @step
@@ -38,14 +38,9 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     rows = spheres.rows
     catch_up(world, k, now)
     catch_up(world, p, now)
-    if not approaches(
-        rows[p, X] - rows[k, X],
-        rows[p, X + 1] - rows[k, X + 1],
-        rows[p, X + 2] - rows[k, X + 2],
-        rows[p, VX] - rows[k, VX],
-        rows[p, VX + 1] - rows[k, VX + 1],
-        rows[p, VX + 2] - rows[k, VX + 2],
-    ):
+    gap = rows[p, X] - rows[k, X], rows[p, X + 1] - rows[k, X + 1], rows[p, X + 2] - rows[k, X + 2]
+    velocity = rows[p, VX] - rows[k, VX], rows[p, VX + 1] - rows[k, VX + 1], rows[p, VX + 2] - rows[k, VX + 2]
+    if not approaches(gap, velocity):
         return False
     swap = spheres.marks[p, LABEL] < spheres.marks[k, LABEL]
     i = p if swap else k

@@ -18,9 +18,11 @@ from harness.motion.predictive.windows import (
     Windows,
     remove,
 )
-from harness.narrowphase.advancement import IMPACT, NEVER, STALLED, time_of_impact, time_of_wall_impact
-from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, Start, time_of_mesh_impact
-from harness.narrowphase.parting import time_of_mesh_parting, time_of_parting
+from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
+from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
+from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
+from harness.narrowphase.tree_pairs import NodePair
+from harness.narrowphase.verdicts import SearchVerdict
 
 
 @kernel
@@ -38,30 +40,30 @@ def search_pair(world: World, body: Solids, windows: Windows, k: int, w: int, no
     hull, phase, seeds = body.shape.hull, windows.marks[w, PHASE], windows.seeds
     hull_seeds = seeds[w, 0], seeds[w, 1], seeds[w, 2], seeds[w, 3]
     coarse = body.concave and phase == APART
-    if coarse or not body.concave:
-        if phase == TOUCHING:
-            found = time_of_parting(hull, body.inradius, a, b, 0.0, left, 2.0 * tolerance, hull_seeds)
+    if phase == TOUCHING:
+        if body.concave:
+            ended = end_of_mesh_contact(body.shape, body.shape, a, b, 0.0, left, 2.0 * tolerance)
         else:
-            enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
-            found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
-        verdict, time, hull_seeds, steps = found.verdict, found.time, found.seeds, found.steps
+            ended = end_of_hull_contact(hull, hull, a, b, 0.0, left, 2.0 * tolerance)
+        verdict, time, steps = ended.verdict, ended.time, ended.steps
+    elif coarse or not body.concave:
+        enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
+        found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
+        verdict, time, hull_seeds, steps = found.verdict, found.time, found.warm_start, found.steps
     else:
-        start = Start(hull_seeds, (seeds[w, 4], seeds[w, 5]))
-        if phase == TOUCHING:
-            mesh_found = time_of_mesh_parting(body.shape, a, b, 0.0, left, 2.0 * tolerance, start)
-        else:
-            mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
+        start = MeshWarmStart(hull_seeds, NodePair(seeds[w, 4], seeds[w, 5]))
+        mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
         verdict, time, steps = mesh_found.verdict, mesh_found.time, mesh_found.steps
-        hull_seeds, (seeds[w, 4], seeds[w, 5]) = mesh_found.start
+        hull_seeds, (seeds[w, 4], seeds[w, 5]) = mesh_found.warm_start
     seeds[w, 0], seeds[w, 1], seeds[w, 2], seeds[w, 3] = hull_seeds
     counts[NARROW_TESTS] += 1
     counts[ADVANCES] += steps
-    if verdict == NEVER:
+    if verdict == SearchVerdict.NEVER:
         remove(windows, k, w)
         return
     windows.times[w] = now + time
     # What has just parted cannot touch but by rounding
-    if verdict == STALLED or (phase == PARTING and time == 0.0):
+    if verdict == SearchVerdict.STALLED or (phase == PARTING and time == 0.0):
         if time < world.rules.pause:
             windows.times[w] = now + world.rules.pause
             counts[STALLED_EVENTS] += 1
@@ -85,7 +87,7 @@ def search_wall(world: World, body: Solids, windows: Windows, k: int, axis: int,
     counts[BOX_TESTS] += 1
     counts[ADVANCES] += found.steps
     windows.wall_times[k, axis] = now + found.time
-    if found.verdict == IMPACT:
+    if found.verdict == SearchVerdict.FOUND:
         windows.wall_phases[k, axis] = DUE
     elif found.time < rules.pause:
         windows.wall_times[k, axis] = now + rules.pause

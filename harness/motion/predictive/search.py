@@ -9,8 +9,8 @@ from __future__ import annotations
 from math import inf
 
 from harness.kernel import step, strict_step
-from harness.motion.predictive.numerics import strict_time_to_touch, time_to_touch
 from harness.motion.predictive.state import LABEL, RADIUS, TIME, VX, Floats, Indices, Ints, X
+from harness.narrowphase.spheres import strict_time_to_touch, time_to_touch
 
 # Candidates solved at a time. A constant, so that the compiler sees that the lanes do not overlap.
 LANES = 64
@@ -47,12 +47,8 @@ def first_touch(
             lanes[6 * LANES + m] = rows[p, RADIUS] + rows[k, RADIUS]
         for m in range((size + WIDTH - 1) // WIDTH * WIDTH):
             lanes[7 * LANES + m] = now + time_to_touch(
-                lanes[m],
-                lanes[LANES + m],
-                lanes[2 * LANES + m],
-                lanes[3 * LANES + m],
-                lanes[4 * LANES + m],
-                lanes[5 * LANES + m],
+                (lanes[m], lanes[LANES + m], lanes[2 * LANES + m]),
+                (lanes[3 * LANES + m], lanes[4 * LANES + m], lanes[5 * LANES + m]),
                 lanes[6 * LANES + m],
             )
         for m in range(size):
@@ -110,4 +106,4 @@ def onset(rows: Floats, k: int, p: int, touching: float) -> float:
     reach = rows[p, RADIUS] + rows[k, RADIUS]
     if gap_x * gap_x + gap_y * gap_y + gap_z * gap_z <= (reach + touching) * (reach + touching):
         return inf
-    return float(begin + strict_time_to_touch(gap_x, gap_y, gap_z, velocity_x, velocity_y, velocity_z, reach))
+    return float(begin + strict_time_to_touch((gap_x, gap_y, gap_z), (velocity_x, velocity_y, velocity_z), reach))
