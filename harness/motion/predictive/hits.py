@@ -5,10 +5,10 @@ from __future__ import annotations
 from harness.kernel import step
 from harness.motion.predictive.burst import note_hit
 from harness.motion.predictive.clock import absolute, catch_up
-from harness.motion.predictive.numerics import approaches
 from harness.motion.predictive.response import bounce, flip
 from harness.motion.predictive.state import ELASTIC, PAIR_EVENT, WALL_EVENT, World
 from harness.motion.predictive.tally import add
+from harness.narrowphase.spheres import approaches
 
 
 @step
@@ -18,14 +18,17 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     motions, schedule, counts = spheres.motions, spheres.schedule, tally.counts[0]
     catch_up(world, k, now)
     catch_up(world, p, now)
-    if not approaches(
+    gap = (
         motions[p].position[0] - motions[k].position[0],
         motions[p].position[1] - motions[k].position[1],
         motions[p].position[2] - motions[k].position[2],
+    )
+    velocity = (
         motions[p].velocity[0] - motions[k].velocity[0],
         motions[p].velocity[1] - motions[k].velocity[1],
         motions[p].velocity[2] - motions[k].velocity[2],
-    ):
+    )
+    if not approaches(gap, velocity):
         return False
     swap = schedule[p].label < schedule[k].label
     i = p if swap else k

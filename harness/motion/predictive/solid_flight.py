@@ -7,7 +7,7 @@ of the narrow phase, which it calls, are compiled in its image: they need memory
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import inf
 from typing import NamedTuple
 
 from harness.kernel import kernel, step
@@ -19,11 +19,12 @@ from harness.motion.predictive.clock import shift as shift_spheres
 from harness.motion.predictive.flight import CROWDED, FULL, REACHED, SPENT
 from harness.motion.predictive.hits import begin_to_touch, hit_pair, reach_plane, turn_back
 from harness.motion.predictive.narrow import search_pair, search_wall
-from harness.motion.predictive.numerics import time_to_plane, time_to_touch
+from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
 from harness.motion.predictive.state import CROSSING, FRESH, NONE, NOTHING, PAIR, RENEWAL, SEARCH, WALL
 from harness.motion.predictive.surroundings import gather
 from harness.motion.predictive.windows import APART, DUE, NEAR, NOBODY, TOUCHING, UNSURE, find, holds, next_due
+from harness.narrowphase.spheres import passage, time_to_touch
 
 # What a body must do after an event: look at all around it anew, look only for whom it does not know yet, or neither.
 ANEW, MORE, SAME = range(3)
@@ -200,7 +201,7 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     w = other.velocity[2] - own.velocity[2]
     reach = own.radius + other.radius
     inside = x * x + y * y + z * z <= reach * reach
-    wait = time_to_touch(x, y, z, u, v, w, reach)
+    wait = time_to_touch((x, y, z), (u, v, w), reach)
     if world.rules.response == NONE and inside:
         wait = 0.0
     if wait == inf:
@@ -214,9 +215,7 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     approach, speed = x * u + y * v + z * w, u * u + v * v + w * w
     phase = APART
     if world.rules.response == NONE:
-        # all the time that the spheres overlap
-        miss = (x * x + y * y + z * z) - approach * approach / speed if speed > 0.0 else 0.0
-        end = now + (sqrt(max(reach * reach - miss, 0.0) / speed) - approach / speed) if speed > 0.0 else inf
+        end = now + passage((x, y, z), (u, v, w), reach).leave
         if inside and not were_apart(solid, k, p, before, theirs):
             phase = UNSURE
     else:

@@ -16,7 +16,7 @@ from harness.arrays import Floats, Ints
 from harness.kernel import kernel, step, strict_step
 from harness.motion.predictive.state import Record, Records, World
 from harness.motion.predictive.windows import Windows
-from harness.narrowphase.advancement import Motion
+from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import support_map
 from harness.narrowphase.triangle_tree import triangle_tree
@@ -52,7 +52,6 @@ class Form:
         faces = mesh.faces if self.concave else mesh.faces[:1]
         tree = triangle_tree(mesh.vertices, faces)
         self.shape = MeshShape(support_map(hull.vertices), tree, 0.5)
-        self.inradius = scene.mesh.hull.inradius
 
 
 def needs_its_surface(scene: Scene) -> bool:
@@ -71,7 +70,6 @@ class Solids(NamedTuple):
     ----------
     shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree is a stump
     concave : whether the surface is to be searched where hulls touch
-    inradius : of a sphere around the centre that the hull holds
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
     spins : (n, 3) rad/s, in the world
@@ -84,7 +82,6 @@ class Solids(NamedTuple):
 
     shape: MeshShape
     concave: bool
-    inradius: float
     sizes: Floats
     reaches: Floats
     spins: Floats
@@ -118,7 +115,7 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     measure(form.shape.hull.vertices, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
     turns = start.copy()
-    return Solids(form.shape, form.concave, form.inradius, sizes, reaches, spins, rates, start, turns, tolerance, scale)
+    return Solids(form.shape, form.concave, sizes, reaches, spins, rates, start, turns, tolerance, scale)
 
 
 @kernel
