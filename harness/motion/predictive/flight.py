@@ -179,7 +179,7 @@ def schedule_next(world: World, k: int, now: float) -> None:
     begin = motion.time
     due = inf
     kind = NOTHING
-    grid = cells.grids[own.grid]
+    grid = cells.grids[own.size_class]
     for axis in range(3):
         x = motion.position[axis]
         v = motion.velocity[axis]

@@ -38,7 +38,7 @@ def fetch_neighbours(world: World, k: int) -> None:
         for m in range(min(lists.members[k].count, 15)):
             fetch(motions, lists.members[k].who[m])
     else:
-        grid = cells.grids[world.spheres.schedule[k].grid]
+        grid = cells.grids[world.spheres.schedule[k].size_class]
         ahead = cells_ahead(grid, world.spheres.schedule[k])
         for x in range(ahead.from_x, ahead.to_x + 1):
             for y in range(ahead.from_y, ahead.to_y + 1):
@@ -77,7 +77,7 @@ def fetch_around(world: World, k: int) -> None:
         if partner >= 0:
             fetch(lists.members, partner)
     else:
-        grid = cells.grids[spheres.schedule[k].grid]
+        grid = cells.grids[spheres.schedule[k].size_class]
         ahead = cells_ahead(grid, spheres.schedule[k])
         for x in range(ahead.from_x, ahead.to_x + 1):
             for y in range(ahead.from_y, ahead.to_y + 1):

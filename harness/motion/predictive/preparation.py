@@ -136,7 +136,7 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
     schedule["partner"] = -1
     schedule["kind"] = FRESH
     schedule["label"] = order
-    schedule["grid"] = size_classes(start.radii)[order]
+    schedule["size_class"] = size_classes(start.radii)[order]
     answer = RESPONSES[response]
     method = SEARCHES[search]
     mean = float(start.radii.mean()) if n else 1.0

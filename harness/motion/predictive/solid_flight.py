@@ -263,7 +263,7 @@ def schedule_next(solid: SolidWorld, k: int, now: float) -> None:
     due = inf
     kind = NOTHING
     held = NOBODY
-    grid = cells.grids[own.grid]
+    grid = cells.grids[own.size_class]
     for axis in range(3):
         v = motion.velocity[axis]
         up = 1 if v > 0.0 else 0

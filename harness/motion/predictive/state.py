@@ -43,7 +43,7 @@ SCHEDULE = np.dtype(
         ("label", np.int32),  # the caller's numbering, which breaks ties
         ("burst", np.int32),  # hits in no time
         ("cell", np.int32, 3),  # along x, y, z
-        ("grid", np.int32),
+        ("size_class", np.int32),
     ],
     align=True,
 )
