@@ -7,15 +7,16 @@ from typing import Protocol
 
 import numpy as np
 
-from harness.arrays import Flags, Floats, Pairs
+from harness.arrays import Floats, Pairs
 from harness.backends.fcl_pair_test import FclPairTest
 from harness.errors import InputError
 from harness.methods.stages import Plan
 from harness.narrowphase.containment import Containment
-from harness.narrowphase.gjk import MARGIN, OVERLAP, SEPARATE, UNDECIDED
-from harness.narrowphase.hull_pairs import HullPairs, Verdicts
+from harness.narrowphase.gjk import MARGIN
+from harness.narrowphase.hull_pairs import HullPairs
 from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.placement import Placement, Places
+from harness.narrowphase.verdicts import PairVerdict, PairVerdicts, which
 from harness.scene.hull import Hull, hull_of
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
@@ -87,9 +88,9 @@ class HullNarrowPhase:
             return close
         self._tests += len(close)
         verdicts, _, undecided = self._hulls.settle(close, self._places.at(positions, quaternions))
-        hit: Flags = verdicts == OVERLAP
+        hit = which(verdicts, PairVerdict.TOUCHING)
         if undecided:
-            left = np.flatnonzero(verdicts == UNDECIDED)
+            left = np.flatnonzero(which(verdicts, PairVerdict.UNDECIDED))
             hit[left] = self._fcl.verdicts(close[left], positions, quaternions)
         touching: Pairs = close[hit]
         return touching
@@ -140,18 +141,18 @@ class MeshNarrowPhase:
         self._hull_tests += len(close)
         placement = self._places.at(positions, quaternions)
         verdicts, _, _ = self._hulls.settle(close, placement)
-        may_touch = verdicts != SEPARATE
+        may_touch = ~which(verdicts, PairVerdict.SEPARATE)
         close, verdicts = close[may_touch], verdicts[may_touch]
         if self._hull_decides:
             self._tests += len(may_touch)
             same_size = self._sizes[close[:, 0]] == self._sizes[close[:, 1]]
-            asked = np.flatnonzero((verdicts == UNDECIDED) | ~same_size)
+            asked = np.flatnonzero(which(verdicts, PairVerdict.UNDECIDED) | ~same_size)
             verdicts[asked] = self._settle(close[asked], placement)
         else:
             self._tests += len(close)
             verdicts = self._settle(close, placement)
-        hit: Flags = verdicts == OVERLAP
-        left = np.flatnonzero(verdicts == UNDECIDED)
+        hit = which(verdicts, PairVerdict.TOUCHING)
+        left = np.flatnonzero(which(verdicts, PairVerdict.UNDECIDED))
         if len(left):
             hit[left] = self._fcl.verdicts(close[left], positions, quaternions)
         self.contained = self._inside(close[~hit], placement)
@@ -177,8 +178,8 @@ def _hull_of_size_1(scene: Scene) -> Hull:
     return hull_of(hull.vertices / size, hull.faces)
 
 
-def _all_open(pairs: Pairs, placement: Placement) -> Verdicts:
-    return np.full(len(pairs), UNDECIDED, np.int8)
+def _all_open(pairs: Pairs, placement: Placement) -> PairVerdicts:
+    return np.full(len(pairs), PairVerdict.UNDECIDED, np.int8)
 
 
 def _none_inside(pairs: Pairs, placement: Placement) -> Pairs:

@@ -14,9 +14,9 @@ import numpy as np
 from harness.arrays import Floats
 from harness.errors import InputError
 from harness.motion.kinematics import turn
-from harness.narrowphase.advancement import Motion
 from harness.narrowphase.contact_intervals import Contacts as Intervals
 from harness.narrowphase.contact_intervals import hull_contacts, mesh_contacts
+from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import mesh_shape
 from harness.narrowphase.support import support_map
 from harness.reference.contacts import Contacts

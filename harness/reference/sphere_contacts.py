@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.kernel import kernel
 from harness.motion.kinematics import Trajectory
+from harness.narrowphase.spheres import passage
 from harness.reference.contacts import Contacts
 from harness.reference.folded_paths import FoldedPaths, fold_time, folded_paths, leg_at, state_on_leg
 from harness.scene.bodies import Bodies
@@ -187,36 +187,3 @@ def _search(paths: FoldedPaths, radii: Floats, window: _Window, found: _Found) -
                     folds[side] = fold_time(paths, body, axis, legs[side] + 1)
             now = later
     return count
-
-
-@kernel
-def passage(gap: Floats, velocity: Floats, reach: float) -> tuple[float, float]:
-    """From when until when |gap + velocity t| <= reach, s, over all of time; (inf, -inf) if never.
-
-    Parameters
-    ----------
-    gap, velocity : (3,) float arrays, m and m/s
-    reach : m
-
-    >>> passage(np.array([3.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 1.0)
-    (2.0, 4.0)
-    """
-    b = gap[0] * velocity[0] + gap[1] * velocity[1] + gap[2] * velocity[2]
-    vv = velocity[0] ** 2 + velocity[1] ** 2 + velocity[2] ** 2
-    distance = sqrt(gap[0] ** 2 + gap[1] ** 2 + gap[2] ** 2)
-    c = (distance - reach) * (distance + reach)
-    if vv == 0.0:
-        return (-inf, inf) if c <= 0.0 else (inf, -inf)
-    # |gap x velocity|² instead of b² - v² c, and c by its factors: exact from afar and near contact
-    x = gap[1] * velocity[2] - gap[2] * velocity[1]
-    y = gap[2] * velocity[0] - gap[0] * velocity[2]
-    z = gap[0] * velocity[1] - gap[1] * velocity[0]
-    discriminant = vv * (reach * reach) - (x * x + y * y + z * z)
-    if discriminant < 0.0:
-        return inf, -inf
-    root = sqrt(discriminant)
-    if b < 0.0:
-        return c / (root - b), (root - b) / vv
-    if root + b == 0.0:
-        return 0.0, 0.0
-    return -(root + b) / vv, -c / (root + b)

@@ -23,15 +23,6 @@ class Hull:
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
 
-    @property
-    def inradius(self) -> float:
-        """Radius of the largest sphere around the origin that the hull holds; 0 if the origin is outside."""
-        a, b, c = (self.vertices[corner] for corner in self.faces.T)
-        normals = np.cross(b - a, c - a)
-        lengths = np.linalg.norm(normals, axis=1)
-        heights = np.einsum("ij,ij->i", normals, a)[lengths > 0.0] / lengths[lengths > 0.0]
-        return max(0.0, float(heights.min()))
-
 
 def convex_hull(points: NDArray[np.float64]) -> Hull:
     """The convex hull of points of any extent in three dimensions.

@@ -32,7 +32,8 @@ def test_frames_are_expected_to_miss_contacts_as_often_as_these_are_shorter():
     found = hit_errors(CONTACTS, 0.0, reported(3.15, 4.25), 0.4)
     assert found["missed_hits_expected"] == pytest.approx(np.mean([0.75, 0.5, 0.25, 0.0]), rel=1e-15)
     # the variance of each is p (1 - p)
-    assert found["missed_hits_deviation"] == (2 - 1.5) / np.sqrt(0.1875 + 0.25 + 0.1875)
+    deviation = np.sqrt(0.1875 + 0.25 + 0.1875)
+    assert found["missed_hits_deviation"] == pytest.approx((2 - 1.5) / deviation, rel=1e-14)
 
 
 def test_a_run_that_ended_early_is_not_judged_by_what_came_after():
