@@ -34,7 +34,9 @@ def as_before():
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_command_that_is_asked_to_end_says_so_and_exits_with_the_signal_in_its_code(number, code, monkeypatch, capsys):
+def test_a_command_that_is_asked_to_end_says_so_and_exits_with_the_signal_in_its_code(
+    number, code, monkeypatch, capsys
+):
     def run(arguments):
         os.kill(os.getpid(), number)
         time.sleep(60)
@@ -46,11 +48,15 @@ def test_a_command_that_is_asked_to_end_says_so_and_exits_with_the_signal_in_its
 
 def test_what_is_begun_is_ended_before_a_command_is():
     ended = []
-    with pytest.raises(Interrupted, match="SIGTERM"), heeding_signals():
+
+    def work():
         try:
             os.kill(os.getpid(), signal.SIGTERM)
         finally:
             ended.append("in order")
+
+    with heeding_signals(), pytest.raises(Interrupted, match="SIGTERM"):
+        work()
     assert ended == ["in order"]
 
 

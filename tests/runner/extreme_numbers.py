@@ -131,7 +131,7 @@ def outcome(experiment: dict[str, Any], opened: dict[Path, Mesh], servers: Serve
         return "refused", f"no place: {unplaced}" if unplaced else None
     point = loaded.points[0]
     cube = next(iter(opened))
-    named = {path: opened[cube] for path in loaded.mesh_paths.values()}
+    named = dict.fromkeys(loaded.mesh_paths.values(), opened[cube])
     with Child.fork(partial(_plan, loaded, named)) as child:
         planned = child.receive(PLAN_SECONDS)
         told = pickle.loads(planned) if isinstance(planned, bytes) else f"{planned}, {child.end()}"
@@ -192,7 +192,10 @@ def main(count: int, seed: int) -> None:
             found[word] += 1
             if complaint is not None:
                 wrong += 1
-                print(f"--- {number}: {word}: {complaint}\n{yaml.safe_dump(experiment, default_flow_style=None)}", flush=True)
+                print(
+                    f"--- {number}: {word}: {complaint}\n{yaml.safe_dump(experiment, default_flow_style=None)}",
+                    flush=True,
+                )
     print(f"{count} experiments (seed {seed}): {dict(found.most_common())}; {wrong} not right")
     sys.exit(1 if wrong else 0)
 
