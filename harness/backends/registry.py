@@ -153,7 +153,7 @@ def _pointed(entry: EntryPoint) -> Declaration:
 def _extras(entry: EntryPoint) -> list[str]:
     try:
         return entry.extras
-    except (AttributeError, AssertionError):  # a value that names no module and no class
+    except (AttributeError, AssertionError, ValueError):  # a value that names no module and no class
         return []
 
 

@@ -97,7 +97,7 @@ def interrupted_after(runs):
 
 
 def test_a_dry_run_says_what_would_be_done_and_how_long_and_does_nothing(which, capsys):
-    assert "12 runs to do, 0 kept from before: no run like these was ever done" in sweep(capsys, "--dry-run")
+    assert "12 runs to do, 0 kept from before: no such run was done before" in sweep(capsys, "--dry-run")
     assert not (which / "results").exists()
     sweep(capsys, "--only", "count=8")
     before = rows()

@@ -85,7 +85,7 @@ def test_two_files_of_one_name_are_refused(capsys: pytest.CaptureFixture[str]) -
         Path(folder).mkdir()
         Path(folder, "same.yaml").write_text(GOOD)
     assert main(["validate", "a", "b"]) == 2
-    assert 'b/same.yaml: this is called "same" as a/same.yaml is' in capsys.readouterr().err
+    assert 'b/same.yaml:1:1: this is called "same" as a/same.yaml is' in capsys.readouterr().err
 
 
 def test_a_wrong_set_is_said_once_for_all_files(capsys: pytest.CaptureFixture[str]) -> None:
