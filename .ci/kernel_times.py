@@ -19,6 +19,8 @@ from statistics import median
 
 HERE = Path(__file__).resolve().parents[1]
 
+LONGEST = 300.0  # s for a command, compilation included
+
 PUMPKIN = "mesh: pumpkin-1753.ply"
 # Scene, motion, engine, and the clock that stands for the kernel.
 CASES = {
@@ -96,8 +98,10 @@ def print_table(base: str, rounds: list[dict[str, dict[str, float]]]) -> None:
 
 
 def run(command: list[str], folder: Path, environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
-    """A command whose failure shows in what is missing."""
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    """A command whose failure shows in what is missing; one that takes too long ends the measurement."""
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=LONGEST
+    )
 
 
 def git(*words: str) -> None:
