@@ -32,7 +32,7 @@ class AlgorithmWord:
     Parameters
     ----------
     meaning : which questions it asks, and when
-    stepped : whether it looks at frames, `dt` apart; else it computes events, as exactly as `tolerance` says
+    stepped : whether it steps from frame to frame, `dt` apart; else it computes events, as exactly as `tolerance` says
     own : whether the pairs are found by this program; else by the backend's own broad phase
     """
 
@@ -44,6 +44,7 @@ class AlgorithmWord:
 ALGORITHMS: dict[str, AlgorithmWord] = {
     "brute-force": AlgorithmWord("every pair, every frame"),
     "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies"),
+    "sap": AlgorithmWord("pairs from bodies sorted along an axis, each compared with those its interval overlaps"),
     "tree": AlgorithmWord("pairs from a dynamic tree of axis-aligned boxes"),
     "native": AlgorithmWord("the backend's own broad phase", own=False),
     "predictive": AlgorithmWord(
@@ -56,6 +57,13 @@ if TYPE_CHECKING:
 else:
     Algorithm = Literal[tuple(ALGORITHMS)]
 
+DEFAULT_ALGORITHM: Algorithm = "brute-force"
+"""What an experiment that names none is run with."""
+
+ReferenceAlgorithm = Literal["predictive"]
+REFERENCE_ALGORITHM: ReferenceAlgorithm = "predictive"
+"""What errors are measured against: frames would miss hits."""
+
 OWN_BACKEND = "fcl"
 """The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
 
@@ -63,7 +71,7 @@ METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages"
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 
 KNOBS = ("dt", "tolerance")
-"""Those of them that trade accuracy for time: the same method, set otherwise."""
+"""Those of them that trade accuracy for time within one method."""
 
 
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
@@ -122,8 +130,14 @@ class MethodName(NamedTuple):
         return f"{self.backend}/{self.algorithm}" if self._word.own else self.backend
 
     @property
+    def short(self) -> str:
+        """The shortest name that `read` understands: "fcl" for every pair put to FCL, else as `pipeline`."""
+        alone = MethodName.read(self.backend, self.shape, self.query)
+        return self.backend if alone == self else self.pipeline
+
+    @property
     def stepped(self) -> bool:
-        """Whether it looks at frames; else it computes events."""
+        """Whether it steps from frame to frame; else it computes events."""
         return self._word.stepped
 
     @property

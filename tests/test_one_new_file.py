@@ -5,17 +5,13 @@ reported, and all of it must be there.
 """
 
 import json
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
+from tests.program_copy import ProgramCopy
+
 pytestmark = pytest.mark.slow
 
-PACKAGE = Path(__file__).parents[1] / "harness"
 EXPERIMENT = """
 title: Tiny
 scene: {shape: sphere, box: [3, 3, 3], count: 4}
@@ -95,22 +91,11 @@ PAGE = Page("about.html", "About", 99, _content)
 @pytest.fixture(scope="module")
 def harness(tmp_path_factory):
     """Runs a command of the copy, which has the new files, and returns what it prints."""
-    folder = tmp_path_factory.mktemp("program")
-    shutil.copytree(PACKAGE, folder / "harness", ignore=shutil.ignore_patterns("__pycache__"))
+    program = ProgramCopy(tmp_path_factory.mktemp("program"), compiled=False)
     for name, text in FILES.items():
-        assert not (folder / "harness" / name).exists()
-        (folder / "harness" / name).write_text(text)
-    (folder / "tiny.yaml").write_text(EXPERIMENT)
-    # four spheres need no compiler
-    environment = os.environ | {"PYTHONPATH": str(folder), "NUMBA_DISABLE_JIT": "1"}
-
-    def run(*words):
-        command = [sys.executable, "-m", "harness", *words]
-        ran = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-        assert ran.returncode == 0, ran.stderr
-        return ran.stdout
-
-    return run
+        program.add(f"harness/{name}", text)
+    program.add("tiny.yaml", EXPERIMENT)
+    return program.run
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,10 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 from typing import TYPE_CHECKING, Any
+
+from harness.cli.streams import speaks_unicode
 
 if TYPE_CHECKING:
     from harness.report.sweeps.difference import Difference, PointDifference
@@ -35,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     found = difference(arguments.db, arguments.before, arguments.after)
     if arguments.json:
-        print(json.dumps(_document(found), ensure_ascii=False, allow_nan=False))
+        print(json.dumps(_document(found), ensure_ascii=not speaks_unicode(sys.stdout), allow_nan=False))
     else:
         _say(found)
     failed = ("slower" in arguments.fail_on and found.counts["slower"]) or (

@@ -1,7 +1,7 @@
 """Replay a run in the browser: of the first point, where a file sweeps.
 
-With --live, a page on this machine on which count, crowding, speed, algorithm, backend and shape can be changed: each
-change is run at once, shown, and its hits and costs are listed.
+With --live, a page on this machine on which count, box ratio, speed, algorithm, backend and shape can be changed: each
+change is run at once and shown, and its hits and costs are listed.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from harness.report.criteria import refusals
+from harness.report.missing import is_judged
 from harness.report.quantity import number, plural, quantity
 from harness.report.ranking import Growth
 from harness.report.sentences.crossings import crossing_sentences
@@ -42,7 +43,7 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
         *exponent_sentences(arrangement, growths),
         *change_sentences(arrangement),
     ]
-    sentences += _outcomes(record.claims, "claim")
+    sentences += _outcomes([row for row in record.claims if is_judged(row)], "claim")
     if not sentences and any(not point.good.empty for point in arrangement.points):
         sentences += _single(arrangement)
     kept = [row for row in record.expectations if row.verdict == "holds"]
@@ -53,7 +54,7 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
             "broken" if row.verdict == "fails" else row.verdict, _ended(row.statement)
         )
         for row in record.expectations
-        if row.verdict != "holds"
+        if row.verdict != "holds" and is_judged(row)
     ]
     return Findings(
         tuple(sentences), (*failures, *_failed_runs(record, arrangement)), tuple(warning_sentences(record, arrangement))
@@ -103,18 +104,7 @@ def _failed_runs(record: ExperimentRecord, arrangement: Arrangement) -> list[Mar
                 number(total - good), plural(total, "run"), kinds
             )
         )
-    missing = sum(point.runs.empty for point in arrangement.points)
-    if missing:
-        found.append(
-            Markup("<strong>{}</strong> not run yet; the same sweep command does the rest.").format(
-                _are(missing, "point")
-            )
-        )
     return found
-
-
-def _are(count: int, noun: str) -> str:
-    return f"{plural(count, noun)} {'is' if count == 1 else 'are'}"
 
 
 def _ended(text: str) -> str:

@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure
+from harness.report.missing import is_judged
 from harness.report.quantity import plural
 from harness.report.results import Results
 from harness.report.stability.case import is_case
@@ -38,7 +39,7 @@ class Card:
         if self.page.failed:
             found.append((f"{self.page.failed} failed", "failed"))
         for verdict in ("holds", "fails", "undecided"):
-            count = sum(row.verdict == verdict for row in self.page.record.claims)
+            count = sum(row.verdict == verdict for row in self.page.record.claims if is_judged(row))
             if count:
                 word = {"holds": "hold", "fails": "fail"}.get(verdict, verdict) if count > 1 else verdict
                 found.append((f"{plural(count, 'claim')} {word}", verdict))
@@ -93,7 +94,7 @@ class Overview:
     @cached_property
     def claims(self) -> list[tuple[ExperimentPage, VerdictRow]]:
         """Every claim, with the experiment that makes it; those of cases say how far a method falls short there."""
-        return [(card.page, row) for card in self.cards for row in card.page.record.claims]
+        return [(card.page, row) for card in self.cards for row in card.page.record.claims if is_judged(row)]
 
     @property
     def totals(self) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.replay.facts import facts
-from harness.replay.page import described, replay_page, said, still_text
+from harness.replay.page import described, replay_page, still_text, summary
 from harness.replay.still import HEIGHT, WIDTH
 from harness.report.quantity import quantity
 from harness.report.words import leaf_label
@@ -50,4 +50,4 @@ def replay_of(database: str | Path, record: ExperimentRecord) -> Replay | None:
         found.recording, record.title, facts(found.parameters, found.counters), back="index.html#replay", picture=still
     )
     which = f"{', '.join(swept)}: " if swept else ""
-    return Replay(page, still, described(found.recording), f"{which}{said(found.recording)}.")
+    return Replay(page, still, described(found.recording), f"{which}{summary(found.recording)}.")

@@ -14,6 +14,7 @@ from markupsafe import Markup
 from harness.errors import InputError
 from harness.report.experiment import ExperimentPage, csv
 from harness.report.markup import render as rendered
+from harness.report.missing import missing_runs
 from harness.report.navigation import OVERVIEW, Navigation, navigation
 from harness.report.overview import Overview
 from harness.report.page import pages_of
@@ -55,6 +56,7 @@ def write_report(database: str | Path, out: str | Path) -> Path:
 def render(database: str | Path) -> Iterator[tuple[str, str]]:
     """Every file of the report: (path below the report, text)."""
     results = Results(database)
+    missing = missing_runs(results.records, results.runs)
     overview, further = Overview(results), pages_of(results)
     written = sections_of("overview", overview) if results.pages else []
     links = navigation([found.section for found in written], [page for page, _ in further])
@@ -69,6 +71,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
             overview=overview,
             sections=written,
             footer=_footer(results.records),
+            missing=missing,
         ),
     )
     for other, content in further:
@@ -79,6 +82,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
                 title=f"{other.title} · harness",
                 navigation=links.on(other.file),
                 footer=_footer(content.records),
+                missing=missing,
                 **content.values,
             ),
         )
@@ -96,6 +100,7 @@ def _experiment(page: ExperimentPage, links: Navigation) -> Iterator[tuple[str, 
         page=page,
         sections=sections_of("experiment", page),
         footer=_footer([page.record]),
+        missing=missing_runs([page.record], page.runs),
     )
     yield f"{page.folder}/index.html", text
     if page.replay is not None:

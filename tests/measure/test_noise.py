@@ -14,6 +14,7 @@ NOISES = {
 MEDIANS = {"normal": 10.0, "skewed": 1.0, "spiky": np.log(2.0) ** 2}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", NOISES)
 @pytest.mark.parametrize("repeats", [5, 6, 8, 11, 20])
 def test_an_interval_holds_the_median_as_often_as_it_says(noise, repeats):

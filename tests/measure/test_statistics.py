@@ -168,6 +168,7 @@ def test_an_exponent_knows_no_units(samples: dict[float, list[float]], x_scale: 
     )
 
 
+@pytest.mark.slow
 def test_exponents_cover_the_truth_95_times_in_100() -> None:
     random = np.random.default_rng(259)
     xs = np.geomspace(5, 50, 10)

@@ -141,6 +141,7 @@ def test_the_page_is_well_formed_and_whole_without_a_network(pages):
         assert href.split("#")[0] in pages
 
 
+@pytest.mark.slow
 def test_in_free_flight_the_page_says_how_long_the_exact_motion_is_followed(tmp_path):
     def fate(parameters, repeat, metrics):
         metrics |= {"divergence_time": 0.1 / parameters["dt"], "position_error": parameters["dt"]}

@@ -1,5 +1,7 @@
 """Points arranged into series."""
 
+import pytest
+
 from harness.report.arrange import arrange
 from harness.store.tables import experiments, runs
 
@@ -9,6 +11,7 @@ def arranged(database, name):
     return arrange(record, runs(database, [name]))
 
 
+@pytest.mark.slow
 def test_x_is_what_the_experiment_asks_for_and_a_leaf_it_determines_is_no_series(database):
     found = arranged(database, "homework/complexity")
     assert (found.x, found.x_values, len(found.series)) == ("faces", (1753, 9868, 17001), 1)

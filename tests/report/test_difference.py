@@ -34,7 +34,7 @@ def results(tmp_path):
                     metrics = {"run_seconds": (seconds, "s"), "pair_tests": (tests * count**2, "1")}
                     database.add_run(
                         number, f"{key}-{count}", repeat, status, None, None, metrics if status == "ok" else {}, grade,
-                        datetime.now(timezone.utc),
+                        started=datetime.now(timezone.utc),
                     )  # fmt: skip
                     database.add_control(number, f"{key}-{count}", repeat, "ok", {"run_seconds": seconds * control})
             database.add_verdicts(number, listed, "claim", [VerdictRow(CLAIM, verdict, "<i>so</i>")])

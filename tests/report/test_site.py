@@ -59,6 +59,7 @@ class Outline(HTMLParser):
             assert self.open.pop() == tag, self.getpos()
 
 
+@pytest.mark.slow
 def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
     links = re.findall(r'<h[34]><a href="([^"]+)"', pages["index.html"])
     assert len(links) == len(experiments(database))
@@ -102,6 +103,7 @@ def test_a_hostile_name_stays_inside_the_report(pages):
     assert all(re.fullmatch(r"(pages/[\w./-]+/)?[\w.-]+", name) and ".." not in name for name in pages)
 
 
+@pytest.mark.slow
 def test_the_same_results_give_the_same_bytes(database, pages):
     assert dict(render(database)) == pages
 

@@ -52,8 +52,6 @@ def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> lis
     unreported = [name for name in asked if not any(len(point.values(name)) for point in arrangement.points)]
     if unreported and any(not point.good.empty for point in arrangement.points):
         found.append(Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported)))
-    if record.sweep.finished is None:
-        found.append(Markup("<strong>The sweep did not come to its end</strong>; the same command does the rest."))
     where = {machine for point in arrangement.points for machine in point.runs["machine"]}
     if len(where) > 1:
         found.append(

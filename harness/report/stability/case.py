@@ -21,6 +21,7 @@ from harness.measure.selection import matching, which
 from harness.report.criteria import as_criterion
 from harness.report.experiment import ExperimentPage
 from harness.report.methods import methods_of
+from harness.report.missing import is_complete
 from harness.report.quantity import leaf_text, number
 from harness.store.records import VerdictRow
 from harness.vocabulary import MethodName
@@ -116,7 +117,7 @@ def is_case(page: ExperimentPage) -> bool:
 
 def cases_of(page: ExperimentPage) -> list[Case]:
     """The cases that an experiment makes: one, or one a shape."""
-    if page.runs.empty:
+    if page.runs.empty or not is_complete(page.record):
         return []
     shapes = [str(shape) for shape in page.runs["shape"].unique()]
     return [Case(page, shape) for shape in shapes] if len(shapes) > 1 else [Case(page, None)]
