@@ -160,7 +160,7 @@ def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
     >>> pairs = {count: [count * (count - 1) / 2] for count in (10, 20, 40, 80)}
     >>> growth = fit_exponent(pairs)
     >>> f"{growth.value:.2f} [{growth.low:.2f}, {growth.high:.2f}]", growth.enough
-    ('2.05 [1.99, 2.10]', True)
+    ('2.04 [2.00, 2.08]', True)
     """
     medians = {float(x): _median(values) for x, values in samples.items()}
     medians = {x: y for x, y in sorted(medians.items()) if math.isfinite(x) and math.isfinite(y)}

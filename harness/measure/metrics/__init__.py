@@ -3,11 +3,6 @@
 Each file of this package declares one metric, or a small family, as `METRICS`; a new file is a new metric. The table is
 the single source of names: runs may report nothing else, `harness list` prints it, and expectations and claims are
 checked against it. Metrics stand in the order of their kinds, of the names of their files, and of their place there.
-
->>> METRICS["pair_tests"].unit, METRICS["pair_tests"].kind, METRICS["pair_tests"].heading
-('1', 'count', 'object/object tests')
->>> METRICS["pair_hits"].ranked, METRICS["frames_per_second"].more_is_better
-(False, True)
 """
 
 from __future__ import annotations
