@@ -17,7 +17,7 @@ CONDITIONS: dict[str, tuple[str, str]] = {
     "frequency": ("clock rate when the run had ended", "Hz"),
     "core": ("number of the core that the run was kept on", "1"),
     "seconds": ("elapsed time of the run with everything around it", "s"),
-    "flights": ("how often the scene was flown, to make the sample long enough", "1"),
+    "flights": ("how often the scene was simulated, to make the sample long enough", "1"),
 }
 
 

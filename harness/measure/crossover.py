@@ -42,6 +42,15 @@ def crossover(a: Costs, b: Costs) -> Crossover | None:
         None where the two share fewer than two x. Costs are interpolated linearly between logarithms. Each repeat has
         a crossing of its own, and their median and interval are given; a repeat without one counts as crossing at the
         nearer end.
+
+    Examples
+    --------
+    A cost that grows with the square of x, and one that grows with x but is 30 times as high at 1:
+
+    >>> xs = (10.0, 20.0, 40.0, 80.0)
+    >>> found = crossover({x: {0: x**2} for x in xs}, {x: {0: 30 * x} for x in xs})
+    >>> f"from {found.at.median:.1f} on {found.ahead} costs less"
+    'from 30.0 on b costs less'
     """
     xs = sorted(x for x in a.keys() & b.keys() if x > 0 and a[x].keys() & b[x].keys())
     repeats = sorted(set.intersection(*(set(a[x].keys() & b[x].keys()) for x in xs))) if len(xs) > 1 else []

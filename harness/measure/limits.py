@@ -47,7 +47,12 @@ class Criterion(Protocol):
 
 @dataclass(frozen=True)
 class Limits:
-    """A closed range, and its words: "at most 2"."""
+    """A closed range, and its words: "at most 2".
+
+    >>> limits = Limits(1.8, 2.2, "between 1.8 and 2.2")
+    >>> limits.hold(2.0), limits.judge(1.9, 2.1), limits.judge(1.9, 2.3), limits.judge(2.3, 2.4)
+    (True, 'holds', 'undecided', 'fails')
+    """
 
     low: float
     high: float
@@ -88,12 +93,20 @@ def limits(criterion: Criterion) -> Limits:
 
 
 def declared(value: float) -> str:
-    """A number as a person wrote it."""
+    """A number as a person wrote it.
+
+    >>> declared(2.0), declared(1e-12)
+    ('2', '1e-12')
+    """
     return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e15 else f"{value:.6g}"
 
 
 def leaves_text(leaves: Mapping[str, Any]) -> str:
-    """Leaves and their values as a sentence has them: "count=50, algorithm=grid"."""
+    """Leaves and their values as a sentence has them.
+
+    >>> leaves_text({"count": 50, "algorithm": ["grid", "tree"]})
+    'count=50, algorithm=grid or tree'
+    """
     return ", ".join(f"{leaf}={_value_text(value)}" for leaf, value in leaves.items())
 
 

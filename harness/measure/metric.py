@@ -66,6 +66,12 @@ class Metric:
     on_demand : made only where an experiment names it, for it takes a simulation of its own
     measure : makes it from the scene and the outcome of a run, once, outside of every clock; None where it has no
         meaning. Without, the motion itself reports it
+
+    Examples
+    --------
+    >>> passes = Metric("close_passes", "1", "physics", "pairs that came within a tenth of their size")
+    >>> passes.heading, passes.ranked
+    ('close passes', False)
     """
 
     name: str

@@ -25,6 +25,11 @@ def noise_floor(first: Sequence[float], second: Sequence[float]) -> float | None
     -------
     float or None
         0.03 where equal runs come 3 % apart. None below five pairs, which say too little.
+
+    Examples
+    --------
+    >>> f"{noise_floor([1.0, 1.0, 1.0, 1.0, 1.0], [1.00, 1.02, 0.98, 1.03, 1.01]):.2f}"
+    '0.02'
     """
     pairs = np.array([(a, b) for a, b in zip(first, second, strict=True) if a > 0.0 and b > 0.0]).reshape(-1, 2)
     if len(pairs) < FEWEST_FOR_INTERVAL:
@@ -33,5 +38,10 @@ def noise_floor(first: Sequence[float], second: Sequence[float]) -> float | None
 
 
 def distinguishable(ratio: Summary, floor: float) -> bool:
-    """Whether a ratio is not 1: its whole interval lies beyond the noise floor, on one side."""
+    """Whether a ratio is not 1: its whole interval lies beyond the noise floor, on one side.
+
+    >>> slower = Summary(1.08, 1.05, 1.12, 0.9375, 5)
+    >>> distinguishable(slower, floor=0.02), distinguishable(slower, floor=0.06)
+    (True, False)
+    """
     return ratio.low > 1.0 + floor or ratio.high * (1.0 + floor) < 1.0

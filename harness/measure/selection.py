@@ -15,7 +15,12 @@ _SAME = 1e-9  # relative: numbers of a file and of a run that mean the same
 
 
 def matching(table: pd.DataFrame, where: Mapping[str, Any]) -> pd.DataFrame:
-    """The rows whose leaves have these values, or one of these where there is a list."""
+    """The rows whose leaves have these values, or one of these where there is a list.
+
+    >>> table = pd.DataFrame({"count": [5, 5, 50], "algorithm": ["grid", "tree", "grid"]})
+    >>> matching(table, {"count": 5, "algorithm": ["grid", "tree"]}).index.tolist()
+    [0, 1]
+    """
     chosen: pd.DataFrame = table.loc[which(table, where)] if where else table
     return chosen
 
@@ -61,7 +66,11 @@ def values(rows: pd.DataFrame, leaves: Sequence[str]) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """A cell of the table as JSON has it; None for what is absent, not a number or infinite."""
+    """A value of the table as JSON has it; None for what is absent, not a number or infinite.
+
+    >>> plain(np.int64(5)), plain(float("nan")), plain("grid")
+    (5, None, 'grid')
+    """
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -95,7 +95,14 @@ class Exponent:
 
 
 def summary(values: ArrayLike) -> Summary:
-    """The median of repeats, with the narrowest symmetric pair of order statistics that covers it 95 times in 100."""
+    """The median of repeats, with the narrowest symmetric pair of order statistics that covers it 95 times in 100.
+
+    >>> found = summary([1.02, 0.99, 1.00, 1.01, 1.30])
+    >>> found.median, found.low, found.high, found.coverage, found.outliers
+    (1.01, 0.99, 1.3, 0.9375, (4,))
+    >>> summary([3.0, 1.0, 2.0]).coverage is None  # too few for an interval: low and high are the range
+    True
+    """
     given = np.asarray(values, dtype=float).ravel()
     counted = np.sort(given[~np.isnan(given)])
     n, missing = len(counted), int(np.isnan(given).sum())
@@ -121,6 +128,14 @@ def paired_ratio(a: ArrayLike, b: ArrayLike) -> Summary:
     ------
     ValueError
         The lengths differ.
+
+    Examples
+    --------
+    What slows both of a pair alike, as the third here, cancels:
+
+    >>> found = paired_ratio([2.0, 2.2, 4.0, 2.0, 1.8], [1.0, 1.1, 2.0, 1.0, 0.9])
+    >>> found.median, found.low, found.high
+    (2.0, 2.0, 2.0)
     """
     numerator, denominator = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     if numerator.shape != denominator.shape:
@@ -139,6 +154,13 @@ def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
     Parameters
     ----------
     samples : {x: repeats of y there}; NaN among the repeats do not count, and an x without any is left out
+
+    Examples
+    --------
+    >>> pairs = {count: [count * (count - 1) / 2] for count in (10, 20, 40, 80)}
+    >>> growth = fit_exponent(pairs)
+    >>> f"{growth.value:.2f} [{growth.low:.2f}, {growth.high:.2f}]", growth.enough
+    ('2.04 [2.00, 2.08]', True)
     """
     medians = {float(x): _median(values) for x, values in samples.items()}
     medians = {x: y for x, y in sorted(medians.items()) if math.isfinite(x) and math.isfinite(y)}
@@ -166,6 +188,11 @@ def geometric_mean(values: ArrayLike) -> float:
     ------
     ValueError
         There is no value, or one that is not above 0 or not finite.
+
+    Examples
+    --------
+    >>> f"{geometric_mean([0.5, 2.0]):.3f}"
+    '1.000'
     """
     given = np.asarray(values, dtype=float)
     if given.size == 0 or not np.all(np.isfinite(given) & (given > 0.0)):

@@ -16,7 +16,11 @@ from harness.arrays import Floats
 
 
 def compressibility(packing: float) -> float:
-    """Z = p / (density kT) of the bulk at a packing fraction, by Carnahan and Starling."""
+    """Z = p / (density kT) of the bulk at a packing fraction, by Carnahan and Starling.
+
+    >>> compressibility(0.0), round(compressibility(0.3), 4)
+    (1.0, 3.9738)
+    """
     eta = packing
     return (1 + eta + eta**2 - eta**3) / (1 - eta) ** 3
 
@@ -46,6 +50,14 @@ def wall_pressure(count: int, diameter: float, temperature: float, sides: Floats
     ------
     ValueError
         If no packing of the bulk below .6 holds so many spheres: the theory is one of fluids.
+
+    Examples
+    --------
+    A dilute gas pays for its walls only the room that centres cannot reach:
+
+    >>> pressure = wall_pressure(10, diameter=0.01, temperature=2.0, sides=np.ones(3))
+    >>> f"{pressure / (10 * 2.0 / 0.99**3):.4f}"  # of the ideal gas's
+    '1.0000'
     """
     from scipy.optimize import brentq  # only event-driven runs need it
 

@@ -11,7 +11,7 @@ import pandas as pd
 from harness.measure.noise import noise_floor
 from harness.report.point import MeasuredPoint
 from harness.report.series import Arrangement, Series, hashable, is_number
-from harness.report.words import setting
+from harness.report.words import leaf_label
 from harness.store.records import ControlRecord, ExperimentRecord
 from harness.vocabulary import METHOD_LEAVES, MethodName
 
@@ -59,7 +59,7 @@ def arrange(
             Series(
                 label,
                 styles.setdefault(label, len(styles)),
-                setting(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
+                leaf_label(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
                 tuple(members),
                 tuple(point.parameters.get(x) for point in members) if x else tuple(None for _ in members),
             )
@@ -111,7 +111,7 @@ def _panel_leaf(points: Sequence[MeasuredPoint], others: Sequence[str]) -> str |
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
     """The swept leaves' values; where none is left, what the method is."""
     named = leaves or [leaf for leaf in ("backend", "algorithm") if leaf in parameters]
-    return "\u00a0· ".join(setting(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
+    return "\u00a0· ".join(leaf_label(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
 
 
 def _follows(points: Sequence[MeasuredPoint], leaf: str, x: str | None) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,7 +24,7 @@ from harness.report.series import Arrangement
 from harness.store.records import ControlRecord, ExperimentRecord
 from harness.vocabulary import MethodName
 
-# Exponents are told for what the experiment asks for and for these counts, which have no noise.
+# Exponents are fitted for what the experiment asks for and for these counts, which have no noise.
 _COUNTS = ("pair_tests", "box_tests", "narrow_tests", "predictions", "events")
 _MOST_VALUES = 6
 
@@ -40,7 +39,7 @@ class ExperimentPage:
     runs : rows of the run table that belong to it
     folder : where the page lies below the report
     controls : of its points
-    conditions : what its runs met on their machines
+    conditions : of the machines while its runs went on
     wrong : methods that were proven wrong at its poses
     all_pages : those of all experiments, this one among them
     database : the results file, where a replay may be kept
@@ -102,8 +101,8 @@ class ExperimentPage:
         parts = []
         for leaf in self.record.specification.get("swept") or ():
             values = list({leaf_text(point.parameters.get(leaf)): 0 for point in self.arrangement.points})
-            said = ", ".join(values) if len(values) <= _MOST_VALUES else f"{values[0]} … {values[-1]}"
-            parts.append(f"{leaf} {said}" + (f" ({len(values)} values)" if len(values) > _MOST_VALUES else ""))
+            listed = ", ".join(values) if len(values) <= _MOST_VALUES else f"{values[0]} … {values[-1]}"
+            parts.append(f"{leaf} {listed}" + (f" ({len(values)} values)" if len(values) > _MOST_VALUES else ""))
         repeats = sorted({int(count) for count in self.runs.groupby("point").size()}) if len(self.runs) else [0]
         each = plural(repeats[0], "repeat") if len(repeats) == 1 else f"{repeats[0]} to {repeats[-1]} repeats"
         points = plural(len(self.record.points), "point")
@@ -139,14 +138,3 @@ def csv(runs: pd.DataFrame) -> str:
     """The run table as CSV, without the columns that nothing reports."""
     kept = [name for name in runs.columns if name not in METRICS or runs[name].notna().any()]
     return str(runs[kept].to_csv(index=False, lineterminator="\n"))
-
-
-def folder_of(name: str, taken: set[str]) -> PurePosixPath:
-    """Where an experiment's page lies: its name, made safe to be a path, and told apart from those taken already."""
-    parts = [re.sub(r"[^\w.-]+", "-", part).strip(".-") for part in name.split("/")]
-    path = "/".join(part[:80] for part in parts if part) or "experiment"
-    unique, copy = path, 2
-    while unique.lower() in taken:
-        unique, copy = f"{path}-{copy}", copy + 1
-    taken.add(unique.lower())
-    return PurePosixPath("pages") / unique

@@ -59,12 +59,12 @@ class Figure:
         if form not in self._drawn:
             self._drawn[form] = self.draw(form, f"{self.name}-{form}")
         name = f"{self.name}-{form}"
-        spoken = (
+        accessible = (
             f'<svg role="img" aria-labelledby="{name}-t" aria-describedby="{name}-d" \\g'
             f'<title id="{name}-t">{escape(self.title)}</title><desc id="{name}-d">{escape(self.description)}</desc>'
         )
         head, tail = self._drawn[form].split(">", 1)
-        return spoken.replace("\\g", f"{head.removeprefix('<svg ')}>", 1) + tail
+        return accessible.replace("\\g", f"{head.removeprefix('<svg ')}>", 1) + tail
 
     @cached_property
     def _drawn(self) -> dict[Form, str]:

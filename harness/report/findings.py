@@ -65,10 +65,10 @@ def _outcomes(verdicts: Sequence[VerdictRow], noun: str) -> list[Markup]:
     if not verdicts:
         return []
     counts = Counter(row.verdict for row in verdicts)
-    said = ", ".join(
+    listed = ", ".join(
         f"{number(counts[word])} {word if counts[word] == 1 else more}" for word, more in _WORDS if counts[word]
     )
-    held = Markup("{}: <strong>{}</strong>.").format(f"{noun}s".capitalize(), said)
+    held = Markup("{}: <strong>{}</strong>.").format(f"{noun}s".capitalize(), listed)
     false = [Markup("False: {}").format(_ended(row.statement)) for row in verdicts if row.verdict == "fails"]
     return [held, *false]
 

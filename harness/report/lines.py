@@ -25,14 +25,16 @@ def axis_title(metric: str, unit: Scale) -> str:
 
 def in_words(panel: Panel) -> str:
     """What the lines of a panel show, from end to end."""
-    said = []
+    sentences = []
     for line in panel.lines:
         if line.y:
             ends = [
                 (panel.categories[int(x)] if panel.categories else panel.x_text(x)) for x in (line.x[0], line.x[-1])
             ]
             unit = panel.y_label.rpartition(", ")[2] if ", " in panel.y_label else ""
-            said.append(
+            sentences.append(
                 f"{line.label}: {number(line.y[0])} {unit} at {ends[0]}, {number(line.y[-1])} {unit} at {ends[1]}."
             )
-    return " ".join([f"{panel.title}:" if panel.title else "", *said]).replace("  ", " ").replace(" .", ".").strip()
+    return (
+        " ".join([f"{panel.title}:" if panel.title else "", *sentences]).replace("  ", " ").replace(" .", ".").strip()
+    )

@@ -104,5 +104,5 @@ class Overview:
         text = f"{plural(len(pages), 'experiment')}, {plural(runs, 'run')}, {failed or 'none'} failed."
         verdicts = Counter(row.verdict for _, row in self.claims)
         ways = (("holds", "hold"), ("fails", "do not"), ("undecided", "undecided"))
-        said = ", ".join(f"{verdicts[verdict]} {word}" for verdict, word in ways if verdicts[verdict])
-        return f"{text} Of {plural(len(self.claims), 'claim')}, {said}." if said else text
+        listed = ", ".join(f"{verdicts[verdict]} {word}" for verdict, word in ways if verdicts[verdict])
+        return f"{text} Of {plural(len(self.claims), 'claim')}, {listed}." if listed else text

@@ -31,12 +31,12 @@ def stages(arrangement: Arrangement) -> list[Stage]:
     for point in arrangement.points:
         for stage in point.row.plan.get("stages") or ():
             why = str(stage.get("why") or "")
-            fate = (bool(stage["kept"]), _NUMBER.sub("#", why))
-            order.setdefault(str(stage["name"]), {}).setdefault(fate, []).append((point.row.key, why))
+            way = (bool(stage["kept"]), _NUMBER.sub("#", why))
+            order.setdefault(str(stage["name"]), {}).setdefault(way, []).append((point.row.key, why))
     return [
-        Stage(name, kept, _merged([why for _, why in told]), _where(arrangement, [key for key, _ in told]))
-        for name, fates in order.items()
-        for (kept, _), told in fates.items()
+        Stage(name, kept, _merged([why for _, why in points]), _where(arrangement, [key for key, _ in points]))
+        for name, ways in order.items()
+        for (kept, _), points in ways.items()
     ]
 
 

@@ -19,7 +19,7 @@ from harness.measure.metrics import METRICS
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import leaf_text
 from harness.report.series import Arrangement
-from harness.report.words import setting
+from harness.report.words import leaf_label
 
 _EXACT = 0.005  # a recovered number of bodies further than this from a whole one is none
 _SLACK = 0.05  # frames counted against frames timed: further apart than this is a contradiction
@@ -40,7 +40,7 @@ class Row:
     @property
     def name(self) -> str:
         """The row's place in its table: "count 5"."""
-        return ", ".join(setting(leaf, value) for leaf, value in self.leaves.items()) or "the only row"
+        return ", ".join(leaf_label(leaf, value) for leaf, value in self.leaves.items()) or "the only row"
 
     def ours(self, metric: str) -> float:
         """Our median of the metric, nan where there is none."""
@@ -93,13 +93,13 @@ def published_rows(name: str, published: Mapping[str, Any], arrangement: Arrange
     for given in published.get("rows") or ():
         numbers = {key: float(value) for key, value in given.items() if key in METRICS and _number(value) is not None}
         leaves = {key: value for key, value in given.items() if key not in METRICS}
-        met = [
+        ours = [
             (series, point)
             for series in arrangement.series
             for point in series.points
             if all(_same(point.parameters.get(leaf), value) for leaf, value in leaves.items())
         ]
-        rows += [Row(name, leaves, numbers, point, series.label, series.style) for series, point in met] or [
+        rows += [Row(name, leaves, numbers, point, series.label, series.style) for series, point in ours] or [
             Row(name, leaves, numbers, None, "", 0)
         ]
     return rows

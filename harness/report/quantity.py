@@ -61,14 +61,22 @@ def scale(values: Iterable[float], unit: str) -> Scale:
 
 
 def quantity(value: float | None, unit: str) -> str:
-    """One number with the unit that suits it alone, such as "3.45 ms"."""
+    """One number with the unit that suits it alone.
+
+    >>> quantity(0.00345, "s").replace("\u00a0", " ")
+    '3.45 ms'
+    """
     if value is None or not math.isfinite(value):
         return MISSING
     return scale([value], unit).with_unit(value)
 
 
 def number(value: float | None) -> str:
-    """Whole numbers in full, others to three significant digits, powers of ten only far from 1."""
+    """Whole numbers in full, others to three significant digits, powers of ten only far from 1.
+
+    >>> number(1234.5).replace(THIN, " "), number(0.012345), number(1e-9).replace(THIN, " ")
+    ('1 234', '0.0123', '1.00 × 10⁻⁹')
+    """
     if value is None or math.isnan(value):
         return MISSING
     if math.isinf(value):
@@ -98,7 +106,11 @@ def exponent_text(value: float) -> str:
 
 
 def leaf_text(value: object) -> str:
-    """A leaf's value as its author would write it: 1/60 stays 1/60, a distribution a distribution."""
+    """A leaf's value as its author would write it: 1/60 stays 1/60, a distribution a distribution.
+
+    >>> leaf_text(1 / 60), leaf_text({"uniform": [0.5, 1.5]}), leaf_text(None)
+    ('1/60', 'uniform 0.5 to 1.5', 'none')
+    """
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "none"
     if isinstance(value, bool | np.bool_):

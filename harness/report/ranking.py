@@ -15,19 +15,19 @@ from harness.report.words import more_is_better
 
 @dataclass(frozen=True)
 class Ranked:
-    """One series at one x. `behind` is how many times worse than the best it is, None where nothing can be paired."""
+    """One series at one x. `ratio` is how many times worse than the best it is, None where nothing can be paired."""
 
     series: Series
     point: MeasuredPoint
     median: float
-    behind: Summary | None
+    ratio: Summary | None
     best: bool
     floor: float = 0.0
 
     @property
-    def level(self) -> bool:
-        """Whether it is the best, or not to be told from it: the ratio's interval is not beyond the noise floor."""
-        return self.best or (self.behind is not None and not distinguishable(self.behind, self.floor))
+    def tied(self) -> bool:
+        """Whether it is the best, or not distinguishable from it beyond the noise floor."""
+        return self.best or (self.ratio is not None and not distinguishable(self.ratio, self.floor))
 
 
 @dataclass(frozen=True)

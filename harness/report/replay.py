@@ -9,7 +9,7 @@ from harness.replay.facts import facts
 from harness.replay.page import described, replay_page, still_text, summary
 from harness.replay.still import HEIGHT, WIDTH
 from harness.report.quantity import quantity
-from harness.report.words import setting
+from harness.report.words import leaf_label
 from harness.store.recording import recording_of
 from harness.store.records import ExperimentRecord
 
@@ -44,7 +44,7 @@ def replay_of(database: str | Path, record: ExperimentRecord) -> Replay | None:
     found = recording_of(database, record.name)
     if found is None:
         return None
-    swept = [setting(leaf, found.parameters.get(leaf)) for leaf in record.specification.get("swept") or ()]
+    swept = [leaf_label(leaf, found.parameters.get(leaf)) for leaf in record.specification.get("swept") or ()]
     still = still_text(found.recording)
     page = replay_page(
         found.recording, record.title, facts(found.parameters, found.counters), back="index.html#replay", picture=still

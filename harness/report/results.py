@@ -88,7 +88,7 @@ class Results:
 
 
 def folder_of(name: str, taken: set[str]) -> PurePosixPath:
-    """Where an experiment's page lies: its name, made safe to be a path, and told apart from those taken already."""
+    """Where an experiment's page lies: its name, made safe to be a path, and another than those taken already."""
     parts = [re.sub(r"[^\w.-]+", "-", part).strip(".-") for part in name.split("/")]
     path = "/".join(part[:80] for part in parts if part) or "experiment"
     unique, copy = path, 2

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from harness.report.point import MeasuredPoint
-from harness.report.words import is_noisy, setting
+from harness.report.words import is_noisy, leaf_label
 from harness.vocabulary import METHOD_LEAVES
 
 Noise = Literal["low noise", "noisy", ""]
@@ -91,7 +91,7 @@ class Arrangement:
             return self.series
         line = self.series[0]
         return tuple(
-            Series(setting(self.x, value), place, line.panel, (point,), (value,))
+            Series(leaf_label(self.x, value), place, line.panel, (point,), (value,))
             for place, (point, value) in enumerate(zip(line.points, line.x, strict=True))
         )
 

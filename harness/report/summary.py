@@ -33,7 +33,7 @@ def summary(results: Results) -> str:
         if not is_case(page)
     ]
     table = ["", "| experiment | what was found | claims |", "|---|---|---|", *rows] if rows else []
-    decisions = [said for accuracy in results.accuracy for said in accuracy.decisions]
+    decisions = [sentence for accuracy in results.accuracy for sentence in accuracy.decisions]
     stability = results.stability.sentences if results.stability else ()
     lines = [head, *_list("What to use", decisions), *table, *_list("Stiff and extreme scenes", stability)]
     return "\n".join(lines) + "\n"

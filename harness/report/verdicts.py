@@ -8,7 +8,7 @@ from typing import Any
 from markupsafe import Markup
 
 from harness.report.markup import render
-from harness.report.words import setting
+from harness.report.words import leaf_label
 from harness.store.records import VerdictRow
 
 
@@ -25,6 +25,6 @@ def _groups(detail: Mapping[str, Any]) -> list[tuple[str, str, str]]:
     groups = detail.get("groups") or []
     rows = []
     for group in groups if len(groups) > 1 else ():
-        which = ", ".join(setting(leaf, value) for leaf, value in group.get("parameters", {}).items())
+        which = ", ".join(leaf_label(leaf, value) for leaf, value in group.get("parameters", {}).items())
         rows.append((which or "all points", str(group.get("verdict", "")), str(group.get("statement", ""))))
     return rows

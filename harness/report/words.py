@@ -15,7 +15,7 @@ _LEAVES = {
     "hull_vertices": "vertices of the hull",
     "packing": "packing (volume of spheres / volume of box)",
     "box_side": "box side, m",
-    "box_ratio": "crowding (body size / box side)²",
+    "box_ratio": "box ratio (body size / box side)²",
     "dt": "time step, s",
     "size": "body size, m",
     "speed": "speed, m/s",
@@ -58,8 +58,12 @@ def leaf_title(leaf: str) -> str:
     return _LEAVES.get(leaf, leaf.replace("_", " "))
 
 
-def setting(leaf: str, value: object) -> str:
-    """One leaf and its value as a label: "fcl", "shape hull", "dt 1/60"."""
+def leaf_label(leaf: str, value: object) -> str:
+    """A leaf and its value as a label.
+
+    >>> leaf_label("backend", "fcl"), leaf_label("shape", "hull"), leaf_label("dt", 1 / 60)
+    ('fcl', 'shape hull', 'dt 1/60')
+    """
     text = leaf_text(value)
     return text if leaf in _SELF_EVIDENT else f"{leaf} {text}"
 
@@ -75,7 +79,11 @@ def is_ranked(name: str) -> bool:
 
 
 def scene_text(parameters: Mapping[str, Any]) -> str:
-    """A scene in a phrase: "40 bodies of pumpkin-1753 (hull) at packing 0.097"."""
+    """A scene in a phrase.
+
+    >>> scene_text({"count": 40, "mesh": "pumpkin-1753.ply", "shape": "hull", "packing": 0.0971}).replace("\u00a0", " ")
+    '40 bodies of pumpkin-1753 (hull) at packing 0.0971'
+    """
     count = parameters.get("count")
     bodies = plural(int(count), "body", "bodies") if isinstance(count, int | float) else "bodies"
     shape, mesh = parameters.get("shape"), parameters.get("mesh")

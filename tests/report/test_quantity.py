@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.report.quantity import MISSING, leaf_text, number, plural, quantity, scale
-from harness.report.words import setting
+from harness.report.words import leaf_label
 
 
 def test_three_digits_and_thousands_apart():
@@ -62,5 +62,5 @@ def test_every_number_has_a_text(value):
 
 
 def test_forced_stages_are_told_as_they_are_written():
-    assert setting("stages", {}) == "as planned"
-    assert setting("stages", {"hull_axis": False, "orientations": True}) == "hull_axis off, orientations on"
+    assert leaf_label("stages", {}) == "as planned"
+    assert leaf_label("stages", {"hull_axis": False, "orientations": True}) == "hull_axis off, orientations on"

@@ -1,5 +1,6 @@
 """The report as files: right, escaped, whole without a network, and the same each time."""
 
+import argparse
 import csv
 import io
 import json
@@ -14,6 +15,7 @@ from harness.errors import InputError
 from harness.report.site import render, write_report
 from harness.store.database import Database
 from harness.store.tables import experiments, runs
+from tests.report.conftest import FEW, write
 
 VOID = {"meta", "br", "img", "hr", "input", "link", "path", "rect", "use"}
 
@@ -209,25 +211,27 @@ def test_a_sweep_without_experiments_gives_an_overview_that_says_so(tmp_path):
     assert "There are no results yet" in pages["index.html"]
 
 
-@pytest.mark.slow
-def test_the_command_writes_the_pages_and_says_where(database, pages, tmp_path, capsys):
-    import argparse
+@pytest.fixture(scope="module")
+def few(tmp_path_factory):
+    """A results file with one small experiment."""
+    return write(tmp_path_factory.mktemp("few") / "results.db", [FEW])
 
+
+def test_the_command_writes_the_pages_and_says_where(few, tmp_path, capsys):
     parser = argparse.ArgumentParser()
     report.add_arguments(parser)
-    assert report.run(parser.parse_args(["--db", str(database), "--out", str(tmp_path / "out")])) == 0
+    assert report.run(parser.parse_args(["--db", str(few), "--out", str(tmp_path / "out")])) == 0
     assert capsys.readouterr().out.strip() == str(tmp_path / "out" / "index.html")
     written = {str(path.relative_to(tmp_path / "out")) for path in (tmp_path / "out").rglob("*") if path.is_file()}
-    assert written == pages.keys()
+    assert written == dict(render(few)).keys()
 
 
-@pytest.mark.slow
-def test_results_that_are_not_there_and_folders_that_cannot_be_are_input_errors(database, tmp_path):
+def test_results_that_are_not_there_and_folders_that_cannot_be_are_input_errors(few, tmp_path):
     with pytest.raises(InputError):
         write_report(tmp_path / "nothing.db", tmp_path / "out")
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="--out"):
-        write_report(database, tmp_path / "file")
+        write_report(few, tmp_path / "file")
 
 
 def test_a_faster_answer_that_is_wrong_is_struck_through_and_never_ranked(report_of):

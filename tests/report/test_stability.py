@@ -86,12 +86,12 @@ def test_a_refusal_that_nobody_expects_is_a_failed_run(case):
     assert "2 failed" in text_of(pages["index.html"])
 
 
-def test_each_shape_is_a_case_and_what_was_not_flown_is_no_verdict(case):
+def test_each_shape_is_a_case_and_what_was_not_run_is_no_verdict(case):
     swept = {"zip": [{"algorithm": "grid", "shape": "hull"}, {"algorithm": "grid", "shape": "mesh"},
                      {"algorithm": "predictive", "shape": "hull"}]}  # fmt: skip
     rows = rows_of(case(swept=swept, expectations=[DRIFT]))
     assert [row.split(" ✓")[0] for row in rows] == ["Far away: hull", "Far away: mesh"]
-    assert rows[1].endswith("not flown")
+    assert rows[1].endswith("not run")
 
 
 def test_without_cases_there_is_no_matrix(report_of):

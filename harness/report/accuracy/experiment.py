@@ -55,29 +55,31 @@ class ExperimentAccuracy:
 
     @property
     def free(self) -> bool:
-        """Whether bodies answer hits, so that each method flies its own motion."""
+        """Whether bodies answer hits, so that each method computes a motion of its own."""
         return any(point.summary("divergence_time") for point in self.page.arrangement.points)
 
     @cached_property
     def reference(self) -> Markup:
         """How far its reference is right, in sentences."""
-        points, said = self.page.arrangement.points, []
+        points, sentences = self.page.arrangement.points, []
         if (worst := _largest(points, "reference_error")) is not None:
-            said.append(
+            sentences.append(
                 Markup(
                     "Of the reference's {} hits a sample was checked: its times are right to <strong>{}</strong>."
                 ).format(number(_largest(points, "reference_hits")), time_text(worst))
             )
         if (agrees := _largest(points, "reference_divergence_time")) is not None:
-            said.append(
+            sentences.append(
                 Markup(
-                    "Flown again in another unit of length, and so rounded otherwise, the reference shares its hits "
+                    "Computed again in another unit of length, and so rounded otherwise, the reference shares its hits "
                 )
                 + Markup("for <strong>{}</strong>").format(time_text(agrees))
             )
             apart = _largest(points, "reference_position_error")
-            said[-1] += Markup(", and its places to {} m.").format(number(apart)) if apart is not None else Markup(".")
-        return Markup(" ").join(said)
+            sentences[-1] += (
+                Markup(", and its places to {} m.").format(number(apart)) if apart is not None else Markup(".")
+            )
+        return Markup(" ").join(sentences)
 
 
 def accuracy_of(pages: Sequence[ExperimentPage]) -> list[ExperimentAccuracy]:

@@ -14,7 +14,7 @@ from harness.report.table import Column, Entry, Table, counted, measured, plain,
 from harness.report.tables.naming import heading, place_of
 from harness.report.words import metric_unit
 
-# What is told of motions that the methods answer for themselves.
+# Of motions in which each method answers its own hits.
 _FREE = (
     "run_seconds", "divergence_time", "position_error", "energy_drift", "momentum_drift", "max_penetration",
     "collision_rate",
@@ -26,17 +26,17 @@ def fastest(tradeoff: Tradeoff) -> Table:
     unit = scale([found.cost.median for _, found in tradeoff.settings], "s")
     rows = []
     for target in TARGETS:
-        lead = {curve.label: (found, behind) for curve, found, behind in tradeoff.lead(target)}
+        reached = {curve.label: (found, ratio) for curve, found, ratio in tradeoff.ratios(target)}
         row = [Entry(target_text(target), numeric=False, sort=target)]
         for curve in tradeoff.curves:
-            if curve.label not in lead:
+            if curve.label not in reached:
                 row.append(Entry("", flag=_why_not(curve), sort=math.inf))
                 continue
-            found, behind = lead[curve.label]
+            found, ratio = reached[curve.label]
             half = (found.cost.high - found.cost.low) / 2
             margin = f"±{unit.margin(found.cost.median, half)}" if half > 0 else ""
             small = ", ".join(part for part in (margin, knob_text(curve, found).strip(" ()")) if part)
-            mark = "best" if tradeoff.level(behind) else ""
+            mark = "best" if tradeoff.tied(ratio) else ""
             row.append(Entry(unit.text(found.cost.median), small, mark=mark, sort=plain(found.cost.median)))
         rows.append(tuple(row))
     columns = (Column("Error", numeric=False), *(Column(curve.label, unit.symbol) for curve in tradeoff.curves))
@@ -121,9 +121,9 @@ def followed(arrangement: Arrangement) -> Table:
             rows.append(tuple(row + [measured(point, name, units[name]) for name in shown]))
     columns = [Column(heading(name), units[name].symbol) for name in shown]
     note = (
-        "Bodies answer their hits, so each method flies its own motion. It is compared with the reference up to the "
-        "first hit of any body that differs; places at up to 256 times until then. After that chaos leaves only what "
-        "is conserved, and how often bodies hit."
+        "Bodies answer their hits, so each method computes a motion of its own. It is held against the reference up to "
+        "the first hit of any body that differs; places at up to 256 times until then. After that chaos leaves only "
+        "what is conserved, and how often bodies hit."
     )
     return Table(
         "How long the exact motion is followed", note, (Column("Method", numeric=False), *columns), tuple(rows)
@@ -132,7 +132,7 @@ def followed(arrangement: Arrangement) -> Table:
 
 def _why_not(curve: Curve) -> str:
     """Why a method does not reach an error."""
-    sound = [found.error for found in curve.settings if found.sound]
+    sound = [found.error for found in curve.settings if found.sees_all_hits]
     if sound:
         return f"{time_text(min(sound))} at best"
     return f"{number(100 * min(found.wrong for found in curve.settings))} % of hits wrong"

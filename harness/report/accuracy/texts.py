@@ -1,4 +1,4 @@
-"""What scenes, knobs, errors and ratios are called where errors are told against run time."""
+"""What scenes, knobs, errors and ratios are called beside curves of error against run time."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def target_text(target: float) -> str:
 
 
 def time_text(value: float) -> str:
-    """A time; what no clock has ever told apart stays in seconds."""
+    """A time; below what any clock resolves it stays in seconds."""
     return quantity(value, "s") if value >= 1e-9 or value == 0.0 else f"{number(value)}\u00a0s"
 
 

@@ -17,7 +17,7 @@ from harness.measure.statistics import Exponent, Summary, fit_exponent
 from harness.report.point import MeasuredPoint
 from harness.report.ranking import times_worse
 from harness.report.series import Arrangement
-from harness.report.words import setting
+from harness.report.words import leaf_label
 from harness.store.records import ExperimentRecord
 from harness.vocabulary import KNOBS, METHOD_LEAVES, MethodName
 
@@ -38,7 +38,7 @@ class Setting:
     knob: float
     cost: Summary
     error: float
-    trust: float
+    reference_error: float
 
     @property
     def wrong(self) -> float:
@@ -48,23 +48,23 @@ class Setting:
         )
 
     @property
-    def sound(self) -> bool:
-        """Whether it sees the hits that there are, so that its error is one of all of them."""
+    def sees_all_hits(self) -> bool:
+        """Whether it sees the hits that there are, all but a few, so that its error is one of all of them."""
         return self.wrong <= MOST_WRONG
 
     @property
     def shown(self) -> float:
-        """Its error, or the reference's where it is smaller: more cannot be told."""
-        return max(self.error, self.trust)
+        """Its error, or the reference's where that is larger: no smaller error means anything."""
+        return max(self.error, self.reference_error)
 
     def reaches(self, target: float) -> bool:
         """Whether it counts as right to within the target."""
-        return self.sound and self.error <= target
+        return self.sees_all_hits and self.error <= target
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A method with its settings, the cheapest first; `label` tells it from the others of its scene."""
+    """A method with its settings, the cheapest first; `label` sets it apart from the others of its scene."""
 
     method: MethodName
     label: str
@@ -85,13 +85,13 @@ class Curve:
         """The power of the time step with which the error falls; None of methods without one."""
         if not self.method.stepped:
             return None
-        fit = fit_exponent({found.knob: [found.error] for found in self.settings if found.sound})
+        fit = fit_exponent({found.knob: [found.error] for found in self.settings if found.sees_all_hits})
         return fit if fit.n >= 2 else None
 
 
 @dataclass(frozen=True, eq=False)
 class Tradeoff:
-    """All methods on one scene of one experiment; `place` tells the scene from the others of the experiment."""
+    """All methods on one scene of one experiment; `place` sets the scene apart from the others of the experiment."""
 
     record: ExperimentRecord
     place: str
@@ -112,7 +112,9 @@ class Tradeoff:
     def front(self) -> list[Setting]:
         """The settings that no other beats in both cost and error, the cheapest first: the Pareto front."""
         best, found = math.inf, []
-        for candidate in sorted((s for _, s in self.settings if s.sound), key=lambda s: (s.cost.median, s.shown)):
+        for candidate in sorted(
+            (s for _, s in self.settings if s.sees_all_hits), key=lambda s: (s.cost.median, s.shown)
+        ):
             if candidate.shown < best:
                 best = candidate.shown
                 found.append(candidate)
@@ -123,7 +125,7 @@ class Tradeoff:
         found = [(curve, cheapest) for curve in self.curves if (cheapest := curve.cheapest(target)) is not None]
         return sorted(found, key=lambda entry: entry[1].cost.median)
 
-    def lead(self, target: float) -> list[tuple[Curve, Setting, Summary | None]]:
+    def ratios(self, target: float) -> list[tuple[Curve, Setting, Summary | None]]:
         """The same, each with how many times it costs what the first costs."""
         ranked = self.ranked(target)
         return [
@@ -131,9 +133,9 @@ class Tradeoff:
             for place, (curve, found) in enumerate(ranked)
         ]
 
-    def level(self, behind: Summary | None) -> bool:
-        """Whether a ratio to the first cannot be told from 1."""
-        return behind is None or not distinguishable(behind, self.floor)
+    def tied(self, ratio: Summary | None) -> bool:
+        """Whether a ratio to the first is not distinguishable from 1."""
+        return ratio is None or not distinguishable(ratio, self.floor)
 
     @property
     def decided(self) -> float | None:
@@ -156,7 +158,7 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
     for points in scenes.values():
         curves = _curves(points)
         if curves:
-            place = ", ".join(setting(leaf, points[0].parameters.get(leaf)) for leaf in leaves)
+            place = ", ".join(leaf_label(leaf, points[0].parameters.get(leaf)) for leaf in leaves)
             found.append(Tradeoff(record, place, curves, arrangement.floor(COST)))
     return found
 
@@ -175,7 +177,7 @@ def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
         first = members[0].parameters
         method = MethodName.of(first)
         settings = [found for point in members if (found := _setting(point, method.knob or "tolerance")) is not None]
-        label = "\u00a0· ".join(setting(leaf, first.get(leaf)) for leaf in leaves) or method.algorithm
+        label = "\u00a0· ".join(leaf_label(leaf, first.get(leaf)) for leaf in leaves) or method.algorithm
         if settings:
             ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
             made.append(Curve(method, label, len(made), ordered))
@@ -191,8 +193,8 @@ def _setting(point: MeasuredPoint, knob: str) -> Setting | None:
     cost, error = point.summary(COST), point.median(ERROR)
     if cost is None or not math.isfinite(error) or not cost.median > 0:
         return None
-    trust = point.median("reference_error")
-    return Setting(point, float(point.parameters[knob]), cost, error, trust if math.isfinite(trust) else 0.0)
+    checked = point.median("reference_error")
+    return Setting(point, float(point.parameters[knob]), cost, error, checked if math.isfinite(checked) else 0.0)
 
 
 def _differing(points: Sequence[MeasuredPoint], wanted: Any) -> list[str]:

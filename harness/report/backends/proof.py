@@ -16,17 +16,17 @@ def sentences_of(row: Mapping[str, Any]) -> list[str]:
     state = f"overlap by {number(-gap)} m" if proof["touching"] else f"are {number(gap)} m apart"
     says = "do not touch" if proof["touching"] else "touch"
     verb = "say" if " and " in row["wrong"] else "says"
-    said = [
+    sentences = [
         f"Bodies {i} and {j} {state}; {row['wrong']} {verb} that they {says}.",
         proof_text(proof, (i, j)),
         f"Seen at {row['certificate']['pose']} (question {row['certificate']['call']} of its scene), "
         f"{' against '.join(row['backends'])}; there the gap was {number(row['gap'])} m.",
     ]
     if row["minimised"] is None:
-        said.append("Asked once and afresh, the backend is right: it depends on what was asked before.")
+        sentences.append("Asked once and afresh, the backend is right: it depends on what was asked before.")
     else:
-        said.append(f"{row['minimised_to']} bodies at rest show it by themselves.")
-    return said
+        sentences.append(f"{row['minimised_to']} bodies at rest show it by themselves.")
+    return sentences
 
 
 def proof_text(proof: Mapping[str, Any], bodies: tuple[int, int]) -> str:

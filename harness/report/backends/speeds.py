@@ -85,7 +85,7 @@ def _correctness(method: MethodName, known: Correctness) -> Entry:
 
 
 def _scene_text(leaves: Sequence[str], values: Sequence[Any]) -> str:
-    said = []
+    parts = []
     for leaf, value in zip(leaves, values, strict=True):
-        said.append(f"packing {float(f'{value:.2g}'):g}" if leaf == "packing" else f"{number(value)} bodies")
-    return ", ".join(said) or "a frame"
+        parts.append(f"packing {float(f'{value:.2g}'):g}" if leaf == "packing" else f"{number(value)} bodies")
+    return ", ".join(parts) or "a frame"

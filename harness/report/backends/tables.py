@@ -111,8 +111,8 @@ def flights(compared: Comparisons) -> Table | None:
         Column("energy", "relative change"),
     )  # fmt: skip
     note = (
-        "Each backend flies the scene by its own hits. Until the first hit that only one of two answers, the "
-        "flights are the same; after it chaos parts them, and only averages can be compared."
+        "With each backend the bodies move by its own hits. Until the first hit that only one of two answers, the "
+        "motions are the same; after it chaos parts them, and only averages can be compared."
     )
     return Table("Bodies in flight", note, columns, tuple(rows))
 
@@ -120,15 +120,15 @@ def flights(compared: Comparisons) -> Table | None:
 def _meeting(compared: Comparisons, name: str, other: str) -> Entry:
     if name == other:
         return words("")
-    met = [tally for tally in compared.pairs if set(tally["backends"]) == {name, other}]
-    verdicts = sum(tally["verdicts"] for tally in met)
+    shared = [tally for tally in compared.pairs if set(tally["backends"]) == {name, other}]
+    verdicts = sum(tally["verdicts"] for tally in shared)
     if not verdicts:
         return words("not compared")
-    share = _percent(sum(tally["agree"] for tally in met) / verdicts)
-    counts = {kind: sum(tally[kind] for tally in met) for kind in KINDS}
-    said = ", ".join(f"{number(count)} {kind}" for kind, count in counts.items() if count and kind != "real")
+    share = _percent(sum(tally["agree"] for tally in shared) / verdicts)
+    counts = {kind: sum(tally[kind] for tally in shared) for kind in KINDS}
+    listed = ", ".join(f"{number(count)} {kind}" for kind, count in counts.items() if count and kind != "real")
     flag = f"{number(counts['real'])} real" if counts["real"] else ""
-    return Entry(share, small=said, numeric=False, flag=flag)
+    return Entry(share, small=listed, numeric=False, flag=flag)
 
 
 def _count(value: float, bad: bool = False) -> Entry:

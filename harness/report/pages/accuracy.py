@@ -14,7 +14,7 @@ def _content(results: Results) -> Content | None:
         return None
     return Content(
         "accuracy.html.j2",
-        {"experiments": found, "decisions": [said for accuracy in found for said in accuracy.decisions]},
+        {"experiments": found, "decisions": [sentence for accuracy in found for sentence in accuracy.decisions]},
         results.records,
         [figure for accuracy in found for figure in accuracy.figures],
     )

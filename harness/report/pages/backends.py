@@ -1,4 +1,4 @@
-"""Backends held against each other: who is right, proven, and what does being right cost?"""
+"""Backends compared on the same poses: who is right, proven, and what does being right cost?"""
 
 from __future__ import annotations
 

@@ -21,4 +21,4 @@ def _content(results: Results) -> Content | None:
     return Content("sweeps.html.j2", values, results.records)
 
 
-PAGE = Page("sweeps.html", "Sweeps compared", 40, _content)
+PAGE = Page("sweeps.html", "Difference of sweeps", 40, _content)

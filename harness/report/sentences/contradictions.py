@@ -32,17 +32,17 @@ def _bodies(found: Sequence[Recovered]) -> list[Markup]:
     whole = [entry for entry in wrong if entry.whole]
     broken = [entry for entry in wrong if not entry.whole]
     if whole:
-        said = Markup(", ").join(
+        listed = Markup(", ").join(
             Markup("<strong>{}</strong> where {} is printed").format(number(round(entry.bodies)), number(entry.printed))
             for entry in whole
         )
-        sentences.append(Markup("The test counts are those of another number of bodies: {}.").format(said))
+        sentences.append(Markup("The test counts are those of another number of bodies: {}.").format(listed))
     if broken:
-        said = Markup(", ").join(
+        listed = Markup(", ").join(
             Markup("<strong>{:.2f}</strong> where {} is printed").format(entry.bodies, number(entry.printed))
             for entry in broken
         )
-        sentences.append(Markup("They fit no whole number of bodies at all: {}.").format(said))
+        sentences.append(Markup("They fit no whole number of bodies at all: {}.").format(listed))
     return sentences
 
 
@@ -50,7 +50,7 @@ def _frames(found: Sequence[Recovered]) -> list[Markup]:
     wrong = [entry for entry in found if not entry.frames_agree and entry.frames_timed is not None]
     if not wrong:
         return []
-    said = Markup(", ").join(
+    listed = Markup(", ").join(
         Markup("{} against {} ({})").format(
             number(round(entry.frames)), number(round(entry.frames_timed or 0)), entry.row.name
         )
@@ -59,7 +59,7 @@ def _frames(found: Sequence[Recovered]) -> list[Markup]:
     duration = next((leaf_text(entry.row.parameter("duration")) for entry in wrong), "")
     return [
         Markup("The frames that were tested are not those that the printed rate makes in {} s: {}.").format(
-            duration, said
+            duration, listed
         )
     ]
 

@@ -13,7 +13,7 @@ from harness.report.quantity import exponent_text, quantity
 from harness.report.ranking import Growth, times_worse
 from harness.report.sentences.ratio import ratio_text
 from harness.report.series import Arrangement
-from harness.report.words import is_noisy, metric_title, metric_unit, more_is_better, setting
+from harness.report.words import is_noisy, leaf_label, metric_title, metric_unit, more_is_better
 
 _MOST_EXPONENTS = 8
 _WIDEST = 2.0
@@ -23,17 +23,17 @@ def exponent_sentences(arrangement: Arrangement, growths: Sequence[Growth]) -> l
     """Growth in one sentence: of all metrics of a lone series, or of all series in the first metric."""
     lone = len(arrangement.series) == 1
     wanted = arrangement.metrics if lone else arrangement.metrics[:1]
-    said: dict[str, list[Growth]] = {}
+    growths_of: dict[str, list[Growth]] = {}
     for growth in growths:
         # a slope known no better than that says nothing in a sentence; the table has it
-        told = growth.exponent.enough and not growth.exponent.high - growth.exponent.low > _WIDEST
-        if told and growth.metric in wanted:
-            said.setdefault(metric_title(growth.metric) if lone else growth.series.label, []).append(growth)
-    if not said or len(said) > _MOST_EXPONENTS or (lone and metric_title(wanted[0]) not in said):
+        is_known = growth.exponent.enough and not growth.exponent.high - growth.exponent.low > _WIDEST
+        if is_known and growth.metric in wanted:
+            growths_of.setdefault(metric_title(growth.metric) if lone else growth.series.label, []).append(growth)
+    if not growths_of or len(growths_of) > _MOST_EXPONENTS or (lone and metric_title(wanted[0]) not in growths_of):
         return []
     parts = [
         Markup("{} as {}<sup><strong>{}</strong></sup>{}").format(name, arrangement.x, *_exponent(group))
-        for name, group in said.items()
+        for name, group in growths_of.items()
     ]
     subject = "Growth" if lone else f"Growth of {metric_title(wanted[0])}"
     over = f" over all values of {arrangement.panel_leaf}" if arrangement.panel_leaf else ""
@@ -66,14 +66,14 @@ def change_sentences(arrangement: Arrangement) -> list[Markup]:
         if more_is_better(metric) and ratio.median > 0:
             ratio = Summary(1 / ratio.median, 1 / ratio.high, 1 / ratio.low, ratio.coverage, ratio.n)
         text = Markup("From {} to {}, {} goes from {} to <strong>{}</strong>").format(
-            setting(str(arrangement.x), low),
-            setting(str(arrangement.x), high),
+            leaf_label(str(arrangement.x), low),
+            leaf_label(str(arrangement.x), high),
             metric_title(metric),
             quantity(first.median(metric), metric_unit(metric)),
             quantity(last.median(metric), metric_unit(metric)),
         )
         how = ratio_text(ratio)
         apart = distinguishable(ratio, arrangement.floor(metric) if is_noisy(metric) else 0.0)
-        told = Markup("") if apart else Markup(", not to be told from no change")
-        found.append(text + Markup(": {}{}.").format(how, told))
+        doubt = Markup("") if apart else Markup(", not to be told from no change")
+        found.append(text + Markup(": {}{}.").format(how, doubt))
     return found

@@ -11,7 +11,15 @@ from harness.report.quantity import quantity
 from harness.report.ranking import Ranked, rank
 from harness.report.sentences.ratio import ratio_text
 from harness.report.series import Arrangement
-from harness.report.words import SCENE_LEAVES, is_noisy, metric_title, metric_unit, more_is_better, scene_text, setting
+from harness.report.words import (
+    SCENE_LEAVES,
+    is_noisy,
+    leaf_label,
+    metric_title,
+    metric_unit,
+    more_is_better,
+    scene_text,
+)
 
 
 def leader_sentences(arrangement: Arrangement) -> list[Markup]:
@@ -34,13 +42,13 @@ def leader_sentences(arrangement: Arrangement) -> list[Markup]:
 
 
 def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
-    best, level = ranked[0], [entry for entry in ranked if entry.level]
+    best, tied = ranked[0], [entry for entry in ranked if entry.tied]
     where = Markup("For {}: ").format(_scene(arrangement, best.point, panel, x))
     most = "highest" if more_is_better(metric) else "lowest"
     value = quantity(best.median, metric_unit(metric))
-    if len(level) > 1:
-        names = " and ".join(entry.series.label for entry in level)
-        rank_text = "about" if len(level) == len(ranked) else f"the {most}, about"
+    if len(tied) > 1:
+        names = " and ".join(entry.series.label for entry in tied)
+        rank_text = "about" if len(tied) == len(ranked) else f"the {most}, about"
         text = Markup("{}{} cannot be told apart in {}, {} <strong>{}</strong>").format(
             where, names, metric_title(metric), rank_text, value
         )
@@ -48,14 +56,14 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
         text = Markup("{}<strong>{}</strong> has the {} {}, <strong>{}</strong>").format(
             where, best.series.label, most, metric_title(metric), value
         )
-    behind = [entry for entry in ranked if not entry.level and entry.behind is not None]
+    behind = [entry for entry in ranked if not entry.tied and entry.ratio is not None]
     if behind:
         chosen = dict.fromkeys((behind[0].series.label, behind[-1].series.label))
-        said = [entry for entry in behind if entry.series.label in chosen]
+        named = [entry for entry in behind if entry.series.label in chosen]
         parts = [
-            Markup("{} ahead of {}").format(ratio_text(entry.behind), entry.series.label)
-            for entry in said
-            if entry.behind is not None
+            Markup("{} ahead of {}").format(ratio_text(entry.ratio), entry.series.label)
+            for entry in named
+            if entry.ratio is not None
         ]
         text += Markup("; that is ") + Markup(", ").join(parts)
     return text + Markup(".")
@@ -65,7 +73,7 @@ def _scene(arrangement: Arrangement, point: MeasuredPoint, panel: str, x: object
     """The scene of a point, and what else of it is swept."""
     parts = [scene_text(point.parameters)]
     if arrangement.x and x is not None and arrangement.x not in SCENE_LEAVES:
-        parts.append(setting(arrangement.x, x))
+        parts.append(leaf_label(arrangement.x, x))
     if panel and arrangement.panel_leaf not in SCENE_LEAVES:
         parts.append(panel)
     return ", ".join(parts)

@@ -14,11 +14,11 @@ from harness.vocabulary import MethodName
 
 def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
     found = []
-    said: dict[str, list[MeasuredPoint]] = {}
+    points_of: dict[str, list[MeasuredPoint]] = {}
     for point in arrangement.points:
         for text in dict.fromkeys(point.row.plan.get("warnings") or ()):
-            said.setdefault(str(text), []).append(point)
-    for text, points in said.items():
+            points_of.setdefault(str(text), []).append(point)
+    for text, points in points_of.items():
         whole = len(points) == len(arrangement.points)
         whom = "every point" if whole else f"{number(len(points))} of {plural(len(arrangement.points), 'point')}"
         found.append(Markup("<strong>{}</strong> ({}).").format(_capital(text.rstrip(".")), whom))

@@ -34,7 +34,7 @@ SIGNS: dict[str, str] = {"survives": "✓", "degrades": "≈", "fails": "✗", "
 MEANINGS: dict[str, str] = {
     "survives": "all that the case expects and claims holds",
     "degrades": "what is expected holds, what a method ought to do does not",
-    "fails": "an expectation is broken, or a run crashed, hung or lost its numbers",
+    "fails": "an expectation is broken, or a run crashed, hung or came to numbers that are not finite",
     "refuses": "the run was rejected, with a reason",
 }
 _LONGEST = 160
@@ -76,7 +76,7 @@ class Case:
         return methods_of(self.runs)
 
     def result(self, pipeline: str) -> CaseResult | None:
-        """What became of it by a pipeline; None where it was not flown by it."""
+        """What became of it by a pipeline; None where it was not run."""
         mine = self.runs[[method.pipeline == pipeline for method in self.methods]]
         if mine.empty:
             return None

@@ -41,7 +41,7 @@ class Matrix:
     @property
     def sentences(self) -> list[Markup]:
         """A sentence a method: "predictive survives 34 of 36 cases, degrades in 2 (…), refuses 1 (…)"."""
-        said = []
+        sentences = []
         for place, (label, counts) in enumerate(self.totals):
             text = Markup("<strong>{}</strong> survives {} of {}").format(
                 label, number(counts["survives"]), plural(counts.total(), "case")
@@ -51,8 +51,8 @@ class Matrix:
                     named = [case.title for case, results in self.rows if _is(results[place], word)]
                     text += Markup(", {} {}").format(phrase, number(counts[word]))
                     text += Markup(" ({})").format("; ".join(named)) if len(named) <= _MOST_NAMED else Markup("")
-            said.append(text + Markup("."))
-        return said
+            sentences.append(text + Markup("."))
+        return sentences
 
 
 def matrix(pages: Sequence[ExperimentPage]) -> Matrix | None:

@@ -6,14 +6,14 @@ from harness.report.point import MeasuredPoint
 from harness.report.quantity import leaf_text
 from harness.report.series import Arrangement, Series
 from harness.report.table import Column, Entry, plain
-from harness.report.words import metric_title, setting
+from harness.report.words import leaf_label, metric_title
 
 
 def place_of(arrangement: Arrangement, series: Series, x: object) -> str:
     """A point in words: its series, its panel and its x."""
     parts = [series.label] if len(arrangement.series) > 1 else []
     parts += [series.panel] if series.panel else []
-    parts += [setting(arrangement.x, x)] if arrangement.x else []
+    parts += [leaf_label(arrangement.x, x)] if arrangement.x else []
     return ", ".join(parts) or series.label
 
 

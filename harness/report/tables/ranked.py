@@ -7,7 +7,7 @@ from harness.report.ranking import Ranked, rank
 from harness.report.series import Arrangement
 from harness.report.table import Column, Table, measured, words
 from harness.report.tables.naming import heading, medians_text, panel_column, panel_entry
-from harness.report.words import is_ranked, metric_unit, setting
+from harness.report.words import is_ranked, leaf_label, metric_unit
 
 # times worse than the best, from which each tint begins
 _TINTS = ((100.0, "t5"), (20.0, "t4"), (5.0, "t3"), (2.0, "t2"), (1.2, "t1"))
@@ -44,7 +44,7 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
     if arrangement.x is None:
         columns.append(Column(metric, unit.symbol))
     else:
-        columns += [Column(setting(arrangement.x, x)) for x in xs]
+        columns += [Column(leaf_label(arrangement.x, x)) for x in xs]
     units = f", {unit.symbol}" if unit.symbol else ""
     note = f"{metric}{units}, {medians_text(arrangement)}."
     if ranked:
@@ -60,7 +60,7 @@ def _why_struck(arrangement: Arrangement) -> str:
 
 
 def _mark(entry: Ranked | None) -> str:
-    if entry is None or entry.level:
+    if entry is None or entry.tied:
         return "best" if entry else ""
-    behind = entry.behind.median if entry.behind else 1.0
-    return next((name for from_, name in _TINTS if behind >= from_), "")
+    times = entry.ratio.median if entry.ratio else 1.0
+    return next((name for from_, name in _TINTS if times >= from_), "")

@@ -26,7 +26,7 @@ def _figure(tradeoff: Tradeoff, name: str) -> Figure:
         rounded=True,
     )  # fmt: skip
     scene = scene_of(tradeoff)
-    said = " ".join(_in_words(curve) for curve in tradeoff.curves)
+    sentences = " ".join(_in_words(curve) for curve in tradeoff.curves)
     doubtful = any(line.doubtful for line in lines)
     caption = (
         "Both axes are logarithmic; the lower left is best. Bars: intervals of the CPU time over the repeats. "
@@ -34,12 +34,12 @@ def _figure(tradeoff: Tradeoff, name: str) -> Figure:
     )
     if doubtful:
         caption += f" Hollow: more than {WRONG_TEXT} of the hits missed or extra, so it counts nowhere."
-    if any(found.error < found.trust for _, found in tradeoff.settings):
+    if any(found.error < found.reference_error for _, found in tradeoff.settings):
         caption += " Errors below what the reference was checked to are drawn there."
     return Figure(
         name,
         f"Error against run time: {scene}",
-        f"Log-log plot of the median time error of hits against CPU time. {said}",
+        f"Log-log plot of the median time error of hits against CPU time. {sentences}",
         caption,
         lambda form, drawn: draw_panels([panel], form, drawn),
         tuple(Key(curve.label, curve.style) for curve in tradeoff.curves),
@@ -55,7 +55,7 @@ def _line(curve: Curve, unit: Scale) -> Line:
         tuple(setting.cost.median / unit.factor for setting in found),
         tuple(setting.shown for setting in found),
         spans=tuple((setting.cost.low / unit.factor, setting.cost.high / unit.factor) for setting in found),
-        doubtful=tuple(place for place, setting in enumerate(found) if not setting.sound),
+        doubtful=tuple(place for place, setting in enumerate(found) if not setting.sees_all_hits),
     )
 
 

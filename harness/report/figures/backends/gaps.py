@@ -27,7 +27,7 @@ def _figures(compared: Comparisons) -> list[Figure]:
     rows = {name: row for name, row in sorted(rows.items()) if row}
     if not rows:
         return []
-    said = "; ".join(
+    listed = "; ".join(
         f"{name}: {', '.join(f'{number(sum(counts.values()))} {kind}' for kind, counts in row.items())}"
         for name, row in rows.items()
     )
@@ -35,7 +35,7 @@ def _figures(compared: Comparisons) -> list[Figure]:
     figure = Figure(
         "gaps",
         "Where on the axis of gaps they disagree",
-        f"Disagreements by pair of backends and by gap. {said}.",
+        f"Disagreements by pair of backends and by gap. {listed}.",
         "To the left bodies overlap by as much, to the right they are so far apart, as a fraction of the smaller "
         "body's size; each column is a factor of ten. A larger mark stands for more disagreements.",
         lambda form, name: draw_gaps(rows, KINDS, form, name),

@@ -29,11 +29,11 @@ def _figures(page: ExperimentPage) -> list[Figure]:
     if not slopes or len(slopes) > _MOST_SLOPES or leaf is None:
         return []
     of = f" of {metric_title(arrangement.metrics[0])}" if several else ""
-    said = "; ".join(f"{slope.label} {slope.value:.2f}, {slope.low:.2f} to {slope.high:.2f}" for slope in slopes)
+    listed = "; ".join(f"{slope.label} {slope.value:.2f}, {slope.low:.2f} to {slope.high:.2f}" for slope in slopes)
     figure = Figure(
         "exponents",
         f"Growth exponents{of} over {leaf}",
-        f"Exponents with their intervals: {said}.",
+        f"Exponents with their intervals: {listed}.",
         f"Exponents{of}: slopes on logarithmic axes, with their intervals. Dotted: the whole numbers.",
         lambda form, name: draw_exponents(slopes, leaf, form, name),
     )

@@ -90,24 +90,24 @@ def _measured(arrangement: Arrangement, metric: str) -> bool:
 
 
 def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool) -> str:
-    said = []
+    sentences = []
     shape = "band" if arrangement.numeric else "bar"
     if any(map(is_noisy, metrics)):
         found = [point.summary(metric) for point in arrangement.points for metric in metrics]
         counts = [summary.n for summary in found if summary]
         if max(counts) == 1:
-            said.append("One run a point: no interval.")
+            sentences.append("One run a point: no interval.")
         elif all(summary.coverage is None for summary in found if summary):
-            said.append(f"Medians; the {shape} is the range of the repeats, too few for an interval.")
+            sentences.append(f"Medians; the {shape} is the range of the repeats, too few for an interval.")
         else:
-            said.append(f"Medians; the {shape} is the median's interval.")
+            sentences.append(f"Medians; the {shape} is the median's interval.")
     else:
-        said.append("Exact: the same in every repeat.")
+        sentences.append("Exact: the same in every repeat.")
     if logarithmic:
-        said.append("Both axes are logarithmic: a straight line is a power law, and its slope the exponent.")
+        sentences.append("Both axes are logarithmic: a straight line is a power law, and its slope the exponent.")
     elif not arrangement.numeric:
-        said.append("The dotted line only guides the eye.")
-    return " ".join(said)
+        sentences.append("The dotted line only guides the eye.")
+    return " ".join(sentences)
 
 
 def _capital(text: str) -> str:

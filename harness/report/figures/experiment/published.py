@@ -37,12 +37,12 @@ def _figures(page: ExperimentPage) -> list[Figure]:
         lines.append(replace(_plain("published", 0, theirs, unit), foreign=True))
         panel = Panel(metric_title(metric), f"{leaf_title(leaf)} ({leaf})", axis_title(metric, unit), tuple(lines))
         panels.append(replace(panel, x_text=leaf_text, logarithmic=spans_logarithms(panel)))
-    said = f"Each panel compares the published numbers of {source} (dashed) with ours, over {leaf_title(leaf)}."
+    opening = f"Each panel compares the published numbers of {source} (dashed) with ours, over {leaf_title(leaf)}."
     keys = (*(Key(name, style) for name, style in series.items()), Key("published", 0, foreign=True))
     figure = Figure(
         "published",
         "Published numbers and ours",
-        " ".join([said, *(in_words(panel) for panel in panels)]),
+        " ".join([opening, *(in_words(panel) for panel in panels)]),
         "Hollow markers and dashed lines: published. Filled: measured here, medians.",
         lambda form, name: draw_panels(panels, form, name, labels=False),
         keys,

@@ -21,9 +21,9 @@ def _noise_floor(arrangement: Arrangement) -> str:
     floors = {name: floor for name in arrangement.metrics if (floor := arrangement.floor(name))}
     if not floors:
         return ""
-    said = ", ".join(f"±{number(100 * floor)} % in {metric_title(name)}" for name, floor in floors.items())
+    listed = ", ".join(f"±{number(100 * floor)} % in {metric_title(name)}" for name, floor in floors.items())
     return (
-        f"Noise floor: {said}. So far apart were runs of the same point done twice (median of "
+        f"Noise floor: {listed}. So far apart were runs of the same point done twice (median of "
         f"{plural(arrangement.controls, 'pair')}); no smaller difference is called one."
     )
 

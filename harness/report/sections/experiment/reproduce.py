@@ -48,15 +48,15 @@ def _sweep_rows(sweep: SweepRecord) -> list[tuple[str, str]]:
 
 
 def _condition_rows(conditions: Sequence[Mapping[str, float]]) -> list[tuple[str, str]]:
-    """What the runs met on their machines: load, stolen time, clock rate."""
+    """The machines while the runs went on: load, stolen time, clock rate."""
     rows = []
     for name in _CONDITIONS:
         meaning, unit = CONDITIONS[name]
         values = sorted(run[name] for run in conditions if name in run)
         if values:
             low, middle, high = (_condition(values[at], unit) for at in (0, len(values) // 2, -1))
-            said = low if low == high else f"{low} to {high}, median {middle}"
-            rows.append((name, f"{said} ({meaning})"))
+            text = low if low == high else f"{low} to {high}, median {middle}"
+            rows.append((name, f"{text} ({meaning})"))
     return rows
 
 

@@ -12,7 +12,9 @@ from harness.report.section import Section
 
 def _html(overview: Overview) -> Markup:
     found = [
-        (f"{FILE}#{accuracy.identity}", said) for accuracy in overview.results.accuracy for said in accuracy.decisions
+        (f"{FILE}#{accuracy.identity}", sentence)
+        for accuracy in overview.results.accuracy
+        for sentence in accuracy.decisions
     ]
     return render("overview/decisions.html.j2", decisions=found) if found else Markup()
 
