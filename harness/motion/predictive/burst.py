@@ -8,8 +8,9 @@ steps of 1e-17 s. A sphere that has had its share waits a `pause` for its next h
 from __future__ import annotations
 
 from harness.kernel import step
-from harness.motion.predictive import tournament
-from harness.motion.predictive.state import CROSSING, PAIR, WALL, World
+from harness.motion.predictive.codes import Event
+from harness.motion.predictive.events import post
+from harness.motion.predictive.state import World
 
 
 @step
@@ -31,17 +32,15 @@ def defer_if_stalled(world: World, k: int, now: float) -> bool:
     """Put off the hit that sphere k holds if it, or its partner, has had too many in no time."""
     own = world.spheres.schedule[k]
     wait = 0.0
-    if own.kind == PAIR:
+    if own.kind == Event.PAIR:
         wait = max(patience(world, k, now), patience(world, own.partner, now))
-    elif own.kind >= WALL and own.kind < CROSSING:
+    elif own.kind == Event.WALL:
         wait = patience(world, k, now)
     if wait <= 0.0:
         return False
-    agenda = world.agenda
-    if own.kind == PAIR:
+    if own.kind == Event.PAIR:
         own.pair_time = now + wait
-    agenda.times[agenda.times.size // 2 + k] = now + wait
-    tournament.replay(agenda, world.spheres.schedule, k)
+    post(world, k, now + wait)
     world.tally.counts[0].stalled_events += 1
     return True
 

@@ -137,6 +137,22 @@ def cell_of(cells: Cells, sphere: Record) -> int:
 
 
 @step
+def layer_beyond(face: int) -> Layer:
+    """The layer of cells beyond a face of a cell: x-, x+, y-, y+, z-, z+."""
+    return Layer(face // 2, 2 * (face % 2) - 1)
+
+
+@step
+def cross(cells: Cells, schedule: Records, k: int) -> Layer:
+    """Sphere k goes through the face of its cell that its event names. Returns the layer that is new to it."""
+    layer = layer_beyond(schedule[k].face)
+    remove(cells, schedule, k)
+    schedule[k].cell[layer.axis] += layer.step
+    insert(cells, schedule, k)
+    return layer
+
+
+@step
 def insert(cells: Cells, schedule: Records, k: int) -> None:
     """Sphere k becomes the first of the cell that its record names."""
     cell = cell_of(cells, schedule[k])

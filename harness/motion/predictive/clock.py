@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from harness.kernel import step
 from harness.motion.predictive import tournament
-from harness.motion.predictive.state import FRESH, NONE, Record, World
+from harness.motion.predictive.codes import Event, ResponseCode
+from harness.motion.predictive.state import Record, World
 
 
 @step
@@ -36,12 +37,12 @@ def catch_up(world: World, k: int, now: float) -> None:
 @step
 def rebase(world: World) -> None:
     """Make the present the origin of time. Done every so many events, however the run is cut into pieces."""
-    if world.rules.response == NONE:
+    if world.rules.response == ResponseCode.NONE:
         # Onset times are known again by their bits; those of moved spheres differ, so all look again
         base = world.tally.clock[0].now
         for k in range(world.spheres.motions.size):
             catch_up(world, k, base)
-            world.spheres.schedule[k].kind = FRESH
+            world.spheres.schedule[k].kind = Event.UNSCHEDULED
             world.agenda.times[world.agenda.times.size // 2 + k] = base
     shift(world)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from harness.kernel import step
 from harness.motion.predictive.burst import note_hit
 from harness.motion.predictive.clock import absolute, catch_up
+from harness.motion.predictive.codes import ResponseCode
 from harness.motion.predictive.numerics import approaches
 from harness.motion.predictive.response import bounce, flip
-from harness.motion.predictive.state import ELASTIC, PAIR_EVENT, WALL_EVENT, World
+from harness.motion.predictive.state import PAIR_EVENT, WALL_EVENT, World
 from harness.motion.predictive.tally import add
 
 
@@ -30,7 +31,7 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     swap = schedule[p].label < schedule[k].label
     i = p if swap else k
     j = k if swap else p
-    if rules.response == ELASTIC:
+    if rules.response == ResponseCode.ELASTIC:
         restitution = rules.restitution
         if restitution < 1.0:
             # TC model: a contact so soon after another belongs to the same lasting contact, and loses nothing more

@@ -7,9 +7,10 @@ shows who is due soon; asking early costs a few instructions.
 from __future__ import annotations
 
 from harness.kernel import step
-from harness.motion.predictive.cells import ALL, Block, Layer, block, cell_number
+from harness.motion.predictive.cells import AROUND, Block, block, cell_number, layer_beyond
+from harness.motion.predictive.codes import Event, NeighbourSearch
 from harness.motion.predictive.memory import fetch
-from harness.motion.predictive.state import CROSSING, LISTS, RENEWAL, Record, World
+from harness.motion.predictive.state import Record, World
 
 # Levels of the tree at which a winner's records, its surroundings, and its neighbours' motions are asked for.
 SPHERE_LEVEL, AROUND_LEVEL, NEIGHBOURS_LEVEL = 6, 5, 4
@@ -34,7 +35,7 @@ def look_ahead(world: World, k: int) -> None:
 def fetch_neighbours(world: World, k: int) -> None:
     """Ask for the motions of sphere k's neighbours."""
     motions, cells, lists = world.spheres.motions, world.cells, world.lists
-    if world.rules.method == LISTS:
+    if world.rules.neighbours == NeighbourSearch.LISTS:
         for m in range(min(lists.members[k].count, 15)):
             fetch(motions, lists.members[k].who[m])
     else:
@@ -52,15 +53,13 @@ def fetch_neighbours(world: World, k: int) -> None:
 def cells_ahead(grid: Record, sphere: Record) -> Block:
     """The cells that a sphere will look at: the layer beyond the next one if it is to cross, else all around."""
     ix, iy, iz = int(sphere.cell[0]), int(sphere.cell[1]), int(sphere.cell[2])
-    axis = ALL
-    step = 0
-    if sphere.kind >= CROSSING and sphere.kind < RENEWAL:
-        axis = (sphere.kind - CROSSING) // 2
-        step = 2 * ((sphere.kind - CROSSING) % 2) - 1
-        ix += step if axis == 0 else 0
-        iy += step if axis == 1 else 0
-        iz += step if axis == 2 else 0
-    return block(grid, ix, iy, iz, Layer(axis, step))
+    layer = AROUND
+    if sphere.kind == Event.CROSSING:
+        layer = layer_beyond(sphere.face)
+        ix += layer.step if layer.axis == 0 else 0
+        iy += layer.step if layer.axis == 1 else 0
+        iz += layer.step if layer.axis == 2 else 0
+    return block(grid, ix, iy, iz, layer)
 
 
 @step
@@ -71,7 +70,7 @@ def fetch_around(world: World, k: int) -> None:
     if partner >= 0:
         fetch(spheres.motions, partner)
         fetch(spheres.schedule, partner)
-    if world.rules.method == LISTS:
+    if world.rules.neighbours == NeighbourSearch.LISTS:
         fetch(lists.anchors, k)
         fetch(lists.members, k)
         if partner >= 0:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from harness.kernel import kernel
+from harness.motion.predictive.codes import Phase
 from harness.motion.predictive.solids import SolidWorld, motion_of
-from harness.motion.predictive.windows import APART, DUE, NEAR, PARTING, TOUCHING, UNSURE, remove
+from harness.motion.predictive.windows import remove
 from harness.narrowphase.advancement import IMPACT, NEVER, STALLED, time_of_impact, time_of_wall_impact
 from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, Start, time_of_mesh_impact
 from harness.narrowphase.parting import time_of_mesh_parting, time_of_parting
@@ -26,9 +27,9 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     left = max(window.end - now, 0.0)
     hull, phase = body.shape.hull, window.phase
     hull_seeds = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
-    coarse = body.concave and phase == APART
+    coarse = body.concave and phase == Phase.APART
     if coarse or not body.concave:
-        if phase == TOUCHING:
+        if phase == Phase.TOUCHING:
             found = time_of_parting(hull, body.inradius, a, b, 0.0, left, 2.0 * tolerance, hull_seeds)
         else:
             enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
@@ -36,7 +37,7 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
         verdict, time, hull_seeds, steps = found.verdict, found.time, found.seeds, found.steps
     else:
         start = Start(hull_seeds, (warm.surfaces[0], warm.surfaces[1]))
-        if phase == TOUCHING:
+        if phase == Phase.TOUCHING:
             mesh_found = time_of_mesh_parting(body.shape, a, b, 0.0, left, 2.0 * tolerance, start)
         else:
             mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
@@ -50,16 +51,16 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
         return
     window.time = now + time
     # What has just parted cannot touch but by rounding
-    if verdict == STALLED or (phase == PARTING and time == 0.0):
+    if verdict == STALLED or (phase == Phase.PARTING and time == 0.0):
         if time < world.rules.pause:
             window.time = now + world.rules.pause
             counts.stalled_events += 1
     elif coarse:
-        window.phase = NEAR
-    elif phase == TOUCHING:
-        window.phase = PARTING
+        window.phase = Phase.NEAR
+    elif phase == Phase.TOUCHING:
+        window.phase = Phase.PARTING
     else:
-        window.phase = TOUCHING if phase == UNSURE and time == 0.0 else DUE
+        window.phase = Phase.TOUCHING if phase == Phase.UNSURE and time == 0.0 else Phase.DUE
 
 
 @kernel
@@ -76,7 +77,7 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     counts.advancement_steps += found.steps
     window.time = now + found.time
     if found.verdict == IMPACT:
-        window.phase = DUE
+        window.phase = Phase.DUE
     elif found.time < rules.pause:
         window.time = now + rules.pause
         counts.stalled_events += 1

@@ -9,21 +9,16 @@ from numpy.typing import ArrayLike
 
 from harness.errors import InputError
 from harness.motion.predictive.cells import build, size_classes
+from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode
 from harness.motion.predictive.order import CROWD, along_curve
 from harness.motion.predictive.state import (
     CANDIDATES,
-    CELLS,
     CLOCK,
     COUNTS,
-    ELASTIC,
     EVENT,
-    FRESH,
-    LISTS,
     MOTION,
     NEIGHBOURS,
-    NONE,
     ONSET,
-    REFLECT,
     SCHEDULE,
     SUM,
     SUMS,
@@ -39,15 +34,15 @@ from harness.motion.predictive.state import (
     aligned,
 )
 
-RESPONSES = {"none": NONE, "reflect": REFLECT, "elastic": ELASTIC}
-SEARCHES = {"cells": CELLS, "lists": LISTS}
+RESPONSES = {code.name.lower(): code for code in ResponseCode}
+SEARCHES = {code.name.lower(): code for code in NeighbourSearch}
 
 # Neighbour lists are faster than cells from this packing on, in crowds of at least this many.
 DENSE = 0.40
 LEAST = 64
 # From this many on, what the next events need is fetched ahead: 1.4 times the rate at 10^5, a loss while all is in
 # the cache.
-MULTITUDE = {CELLS: 20_000, LISTS: 4_000}
+MULTITUDE = {NeighbourSearch.CELLS: 20_000, NeighbourSearch.LISTS: 4_000}
 # Skin of the lists, in mean diameters.
 SKIN = 0.65
 # A pair hit this soon after another, in the time a mean sphere flies its radius, is part of one lasting contact (TC
@@ -56,7 +51,7 @@ CONTACT = 1e-6
 # What a stalled sphere waits, in the same unit, and how many hits in no time make it stall. Elastic ones come to an end
 # and may be many; but in a crystal without room each sphere would take that many, so they are shared among all.
 PAUSE = 1e-3
-BURST = {NONE: 1000, REFLECT: 1000, ELASTIC: 1_000_000}
+BURST = {ResponseCode.NONE: 1000, ResponseCode.REFLECT: 1000, ResponseCode.ELASTIC: 1_000_000}
 BURST_LEAST = 100
 # Events to one re-basing of time, for each sphere and for each run; with response none every sphere must look again
 # then.
@@ -134,28 +129,28 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
     schedule["last_hit"] = -np.inf
     schedule["mass"] = start.masses[order]
     schedule["partner"] = -1
-    schedule["kind"] = FRESH
+    schedule["kind"] = Event.UNSCHEDULED
     schedule["label"] = order
     schedule["grid"] = size_classes(start.radii)[order]
     answer = RESPONSES[response]
-    method = SEARCHES[search]
+    neighbours = SEARCHES[search]
     mean = float(start.radii.mean()) if n else 1.0
     speed = float(np.sqrt((start.velocities**2).sum(axis=1).mean())) if n else 0.0
     instant = mean / speed if speed > 0.0 else 1.0
-    skin = 2.0 * SKIN * mean if method == LISTS else 0.0
+    skin = 2.0 * SKIN * mean if neighbours == NeighbourSearch.LISTS else 0.0
     rules = Rules(
         half_box=start.half_box,
-        method=method,
+        neighbours=neighbours,
         response=answer,
         restitution=restitution,
         skin=skin,
         contact_time=CONTACT * instant,
-        blink=CONTACT * instant if answer == REFLECT else 0.0,
+        blink=CONTACT * instant if answer == ResponseCode.REFLECT else 0.0,
         pause=PAUSE * instant,
-        burst=max(BURST[answer] // max(n, 1), BURST_LEAST) if answer == ELASTIC else BURST[answer],
+        burst=max(BURST[answer] // max(n, 1), BURST_LEAST) if answer == ResponseCode.ELASTIC else BURST[answer],
         touching=TOUCHING * float(start.half_box.max()),
-        span=SPAN_LEAST + (SPAN_NONE if answer == NONE else SPAN) * n,
-        crowded=n >= MULTITUDE[method],
+        span=SPAN_LEAST + (SPAN_NONE if answer == ResponseCode.NONE else SPAN) * n,
+        crowded=n >= MULTITUDE[neighbours],
         depth=max(n - 1, 1).bit_length(),
         tidying=TIDYING if n >= CROWD else 0,
     )
@@ -163,7 +158,7 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
         spheres=Spheres(motions, schedule, contacts=np.full(n, -np.inf)),
         agenda=agenda(n),
         cells=build(start.half_box, start.radii, skin),
-        lists=lists(motions, method),
+        lists=lists(motions, neighbours),
         rules=rules,
         tally=tally(),
         journal=np.zeros(CHUNK if record else 0, dtype=EVENT),
@@ -185,9 +180,9 @@ def agenda(n: int) -> Agenda:
     )
 
 
-def lists(motions: Records, method: int) -> Lists:
+def lists(motions: Records, neighbours: NeighbourSearch) -> Lists:
     """Empty neighbour lists, anchored where the spheres are, or none at all."""
-    n = len(motions) if method == LISTS else 0
+    n = len(motions) if neighbours == NeighbourSearch.LISTS else 0
     return Lists(anchors=motions["position"][:n].copy(), members=aligned(n, NEIGHBOURS))
 
 

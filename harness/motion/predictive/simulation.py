@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from harness.errors import InputError
 from harness.motion.predictive import cells
-from harness.motion.predictive.flight import CROWDED, FULL, SPENT, UNTIDY, fly, populate
+from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
+from harness.motion.predictive.flight import fly, populate
 from harness.motion.predictive.order import labelled, positions_at, tidy
 from harness.motion.predictive.preparation import RESPONSES, SEARCHES, check, choose_search, lists, prepare
-from harness.motion.predictive.state import CELLS, EVENT, FRESH, PAIR_EVENT, WALL_EVENT, Floats
+from harness.motion.predictive.state import EVENT, PAIR_EVENT, WALL_EVENT, Floats
 
 __all__ = ["EVENT", "PAIR_EVENT", "WALL_EVENT", "Simulation", "warm_up"]
 
@@ -71,15 +72,15 @@ class Simulation:
     def advance(self, until: float, max_events: int | None = None) -> bool:
         """Fly to `until` (s); what is due at that very time still happens. False if `max_events` hits came first."""
         budget = 2**62 if max_events is None else self.counters["events"] + max_events
-        while (reason := self._fly(float(until), budget)) in (FULL, CROWDED, UNTIDY):
-            if reason == FULL:
+        while (reason := self._fly(float(until), budget)) in (Stop.FULL, Stop.NO_ROOM, Stop.REORDER):
+            if reason == Stop.FULL:
                 self._chunks.append(self._drain())
-            elif reason == CROWDED:
+            elif reason == Stop.NO_ROOM:
                 self._make_room()
             else:
                 tidy(self._world)
                 populate(self._world, True)
-        if reason == SPENT:
+        if reason == Stop.SPENT:
             self.time = self._last_event_time
             return False
         self.time = max(self.time, until)
@@ -132,7 +133,7 @@ class Simulation:
     @property
     def search(self) -> str:
         """Where neighbours come from: 'cells' or 'lists'."""
-        return next(name for name, method in SEARCHES.items() if method == self._world.rules.method)
+        return next(name for name, code in SEARCHES.items() if code == self._world.rules.neighbours)
 
     # -- physics -----------------------------------------------------------------------------------------------------
 
@@ -209,12 +210,12 @@ class Simulation:
         motions["position"] = positions_at(world, now)
         motions["time"] = now
         leaves = len(world.agenda.times) // 2
-        world.spheres.schedule["kind"] = FRESH
+        world.spheres.schedule["kind"] = Event.UNSCHEDULED
         world.agenda.times[leaves : leaves + len(self)] = now
         self._world = world._replace(
             cells=cells.build(self._start.half_box, self._start.radii, 0.0),
-            lists=lists(motions, CELLS),
-            rules=world.rules._replace(method=CELLS, skin=0.0),
+            lists=lists(motions, NeighbourSearch.CELLS),
+            rules=world.rules._replace(neighbours=NeighbourSearch.CELLS, skin=0.0),
         )
         populate(self._world, False)
 

@@ -8,77 +8,56 @@ of the narrow phase, which it calls, are compiled in its image: they need memory
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import NamedTuple
 
 from harness.kernel import kernel, step
-from harness.motion.predictive import tournament, windows
+from harness.motion.predictive import windows
 from harness.motion.predictive.burst import patience
-from harness.motion.predictive.cells import ALL, AROUND, Layer, insert, next_face, remove
+from harness.motion.predictive.cells import ALL, AROUND, cross, next_face
 from harness.motion.predictive.clock import catch_up, relative
 from harness.motion.predictive.clock import shift as shift_spheres
-from harness.motion.predictive.flight import CROWDED, FULL, REACHED, SPENT
+from harness.motion.predictive.codes import Event, Phase, ResponseCode, Stop, Task
+from harness.motion.predictive.events import FollowUp, begin, post, reason_to_stop
 from harness.motion.predictive.hits import begin_to_touch, hit_pair, reach_plane, turn_back
 from harness.motion.predictive.narrow import search_pair, search_wall
 from harness.motion.predictive.numerics import time_to_plane, time_to_touch
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
-from harness.motion.predictive.state import CROSSING, FRESH, NONE, NOTHING, PAIR, RENEWAL, SEARCH, WALL
+from harness.motion.predictive.state import NOBODY
 from harness.motion.predictive.surroundings import gather
-from harness.motion.predictive.windows import APART, DUE, NEAR, NOBODY, TOUCHING, UNSURE, find, holds, next_due
-
-# What a body must do after an event: look at all around it anew, look only for whom it does not know yet, or neither.
-ANEW, MORE, SAME = range(3)
-
-
-class Aftermath(NamedTuple):
-    """What is to be done after an event.
-
-    task : ANEW, MORE or SAME
-    other : the other body that must do so, or `NOBODY`
-    layer : the cells that are new to those who look
-    """
-
-    task: int
-    other: int
-    layer: Layer
+from harness.motion.predictive.windows import find, holds, next_due
 
 
 @kernel
-def fly_solids(solid: SolidWorld, until: float, budget: int) -> int:
+def fly_solids(solid: SolidWorld, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
     world = solid.world
-    agenda, counts, clock = world.agenda, world.tally.counts[0], world.tally.clock[0]
+    agenda, schedule, clock = world.agenda, world.spheres.schedule, world.tally.clock[0]
     limit = relative(clock, until)
     while True:
-        k = int(agenda.winners[1])
-        now = agenda.times[1]
-        if not now <= limit or now == inf:
-            return REACHED
-        if counts.pair_hits + counts.box_hits >= budget:
-            return SPENT
-        if solid.windows.free[0].count < 2 * world.spheres.motions.size:
-            return CROWDED
-        if counts.since_rebasing >= world.rules.span and now > clock.now:
+        stop = reason_to_stop(world, limit, budget)
+        if stop == Stop.REBASE:
             windows.shift(solid.windows, clock.now)
             shift_spheres(world)
             turn_to_base(solid.body, clock)
             limit = relative(clock, until)
             continue
-        if counts.recorded == world.journal.size and counts.recorded > 0:
-            return FULL
-        clock.now = now
-        counts.since_rebasing += 1
-        after = Aftermath(SAME, NOBODY, AROUND)
-        if world.spheres.schedule[k].kind == SEARCH:
+        if stop != Stop.NOT:
+            return stop
+        if solid.windows.free[0].count < 2 * schedule.size:
+            return Stop.NO_ROOM
+        k = int(agenda.winners[1])
+        now = agenda.times[1]
+        begin(world, now)
+        after = FollowUp(Task.KEEP, NOBODY, AROUND)
+        if schedule[k].kind == Event.SEARCH:
             search(solid, k, now)
         else:
             after = happen(solid, k, now)
         for turn in range(2):
             who = k if turn == 0 else after.other
             if who >= 0:
-                if after.task != SAME:
-                    look(solid, who, now, after.task == ANEW, after.layer)
+                if after.task != Task.KEEP:
+                    look(solid, who, now, after)
                 schedule_next(solid, who, now)
-                tournament.replay(agenda, world.spheres.schedule, who)
 
 
 @kernel
@@ -95,37 +74,32 @@ def search(solid: SolidWorld, k: int, now: float) -> None:
 
 
 @step
-def happen(solid: SolidWorld, k: int, now: float) -> Aftermath:
+def happen(solid: SolidWorld, k: int, now: float) -> FollowUp:
     """Carry out body k's event, other than a search."""
     world = solid.world
     schedule, counts = world.spheres.schedule, world.tally.counts[0]
-    kind = int(schedule[k].kind)
-    task = SAME
+    own = schedule[k]
+    task = Task.KEEP
     other = NOBODY
-    axis = ALL
-    step = 0
-    if kind == PAIR:
+    layer = AROUND
+    if own.kind == Event.PAIR:
         held = int(solid.windows.held[k])
         if not holds(solid.windows, schedule, held):
             windows.remove(solid.windows, k, held)
             counts.stale_events += 1
         elif meet(solid, k, held, now):
-            task = ANEW
-            other = int(solid.windows.pool[held].other)
-    elif kind >= WALL and kind < CROSSING:
-        if meet_wall(solid, k, kind - WALL, now):
-            task = ANEW
-    elif kind >= CROSSING and kind < RENEWAL:
-        axis = (kind - CROSSING) // 2
-        step = 2 * ((kind - CROSSING) % 2) - 1
-        remove(world.cells, schedule, k)
-        schedule[k].cell[axis] += step
-        insert(world.cells, schedule, k)
+            task = Task.PREDICT
+            other = int(own.partner)
+    elif own.kind == Event.WALL:
+        if meet_wall(solid, k, own.face, now):
+            task = Task.PREDICT
+    elif own.kind == Event.CROSSING:
+        task = Task.EXTEND
+        layer = cross(world.cells, schedule, k)
         counts.cell_crossings += 1
-        task = MORE
     else:
-        task = ANEW if kind == FRESH else MORE
-    return Aftermath(task, other, Layer(axis, step))
+        task = Task.PREDICT if own.kind == Event.UNSCHEDULED else Task.EXTEND
+    return FollowUp(task, other, layer)
 
 
 @step
@@ -138,9 +112,9 @@ def meet(solid: SolidWorld, k: int, w: int, now: float) -> bool:
         window.time = now + wait
         world.tally.counts[0].stalled_events += 1
         return False
-    if world.rules.response == NONE:
+    if world.rules.response == ResponseCode.NONE:
         begin_to_touch(world, k, p, now)
-        window.phase = TOUCHING
+        window.phase = Phase.TOUCHING
         return False
     if hit_pair(world, k, p, now):
         return True
@@ -158,7 +132,7 @@ def meet_wall(solid: SolidWorld, k: int, face: int, now: float) -> bool:
         solid.windows.walls[k, axis].time = now + wait
         world.tally.counts[0].stalled_events += 1
         return False
-    if world.rules.response == NONE:
+    if world.rules.response == ResponseCode.NONE:
         reach_plane(world, k, face, world.rules.half_box[axis] - 0.5 * solid.body.sizes[k], now)
     else:
         catch_up(world, k, now)
@@ -167,16 +141,17 @@ def meet_wall(solid: SolidWorld, k: int, face: int, now: float) -> bool:
 
 
 @step
-def look(solid: SolidWorld, k: int, now: float, anew: bool, layer: Layer) -> None:
+def look(solid: SolidWorld, k: int, now: float, after: FollowUp) -> None:
     """Open body k's windows: on everybody around it, or on those it does not know yet."""
     world = solid.world
+    anew = after.task == Task.PREDICT
     known = int(solid.windows.heads[k])
     if anew:
         solid.windows.heads[k] = NOBODY
         look_at_walls(solid, k, now)
         world.tally.counts[0].predictions += 1
-    count = gather(world, k, now, layer)
-    world.tally.counts[0].pair_tests += count - (layer.axis == ALL)
+    count = gather(world, k, now, after.layer)
+    world.tally.counts[0].pair_tests += count - (after.layer.axis == ALL)
     for m in range(count):
         p = int(world.scratch.found[m])
         if p != k:
@@ -201,7 +176,7 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     reach = own.radius + other.radius
     inside = x * x + y * y + z * z <= reach * reach
     wait = time_to_touch(x, y, z, u, v, w, reach)
-    if world.rules.response == NONE and inside:
+    if world.rules.response == ResponseCode.NONE and inside:
         wait = 0.0
     if wait == inf:
         return
@@ -212,13 +187,13 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     if before < 0:
         before = theirs
     approach, speed = x * u + y * v + z * w, u * u + v * v + w * w
-    phase = APART
-    if world.rules.response == NONE:
+    phase = Phase.APART
+    if world.rules.response == ResponseCode.NONE:
         # all the time that the spheres overlap
         miss = (x * x + y * y + z * z) - approach * approach / speed if speed > 0.0 else 0.0
         end = now + (sqrt(max(reach * reach - miss, 0.0) / speed) - approach / speed) if speed > 0.0 else inf
         if inside and not were_apart(solid, k, p, before, theirs):
-            phase = UNSURE
+            phase = Phase.UNSURE
     else:
         end = now - approach / speed
     new = windows.add(open_, schedule, k, p)
@@ -236,7 +211,7 @@ def were_apart(solid: SolidWorld, k: int, p: int, before: int, theirs: int) -> b
         return False
     schedule, last = solid.world.spheres.schedule, solid.windows.pool[before]
     stood = last.other_hits == (schedule[k].hits - 1 if before == theirs else schedule[p].hits)
-    return bool(stood and last.phase in (APART, NEAR, DUE))
+    return bool(stood and last.phase in (Phase.APART, Phase.NEAR, Phase.DUE))
 
 
 @step
@@ -246,10 +221,10 @@ def look_at_walls(solid: SolidWorld, k: int, now: float) -> None:
     for axis in range(3):
         velocity = motion.velocity[axis]
         radius = 0.5 * solid.body.sizes[k]
-        phase = DUE
-        if world.rules.response != NONE:
+        phase = Phase.DUE
+        if world.rules.response != ResponseCode.NONE:
             radius *= 1.0 + 2.0 * solid.body.tolerance
-            phase = APART
+            phase = Phase.APART
         plane = world.rules.half_box[axis] - radius
         wait = time_to_plane((plane if velocity > 0.0 else -plane) - motion.position[axis], velocity)
         solid.windows.walls[k, axis].time = max(motion.time + wait, now)
@@ -258,11 +233,12 @@ def look_at_walls(solid: SolidWorld, k: int, now: float) -> None:
 
 @step
 def schedule_next(solid: SolidWorld, k: int, now: float) -> None:
-    """The earliest of body k's windows, walls, cell faces and renewal goes to its leaf."""
+    """Schedule the earliest of body k's windows, walls, cell faces and renewal."""
     world, open_, cells = solid.world, solid.windows, solid.world.cells
     motion, own = world.spheres.motions[k], world.spheres.schedule[k]
     due = inf
-    kind = NOTHING
+    kind = Event.NOTHING
+    met = 0
     held = NOBODY
     grid = cells.grids[own.grid]
     for axis in range(3):
@@ -272,28 +248,31 @@ def schedule_next(solid: SolidWorld, k: int, now: float) -> None:
         time = motion.time + time_to_plane(face, v)
         if time < due:
             due = time
-            kind = CROSSING + 2 * axis + up
+            kind = Event.CROSSING
+            met = 2 * axis + up
     if cells.grids.size > 1 and cells.renewals[k] < due:
         due = cells.renewals[k]
-        kind = RENEWAL
+        kind = Event.RENEWAL
     for axis in range(3):
         wall = open_.walls[k, axis]
         time = wall.time
-        face_kind = WALL + 2 * axis + (1 if motion.velocity[axis] > 0.0 else 0) if wall.phase == DUE else SEARCH
-        if time < due or (time == due and time < inf and face_kind < kind):
+        wall_kind = Event.WALL if wall.phase == Phase.DUE else Event.SEARCH
+        if time < due or (time == due and time < inf and wall_kind < kind):
             due = time
-            kind = face_kind
+            kind = wall_kind
+            met = 2 * axis + (1 if motion.velocity[axis] > 0.0 else 0)
             held = -1 - axis
     which = next_due(open_, world.spheres.schedule, k)
     if which >= 0:
         time = open_.pool[which].time
-        pair_kind = PAIR if open_.pool[which].phase == DUE else SEARCH
+        pair_kind = Event.PAIR if open_.pool[which].phase == Phase.DUE else Event.SEARCH
         if time < due or (time == due and pair_kind < kind):
             due = time
             kind = pair_kind
             held = which
     own.kind = kind
-    if kind == PAIR:
+    own.face = met
+    if kind == Event.PAIR:
         own.partner = open_.pool[held].other
     open_.held[k] = held
-    world.agenda.times[world.agenda.times.size // 2 + k] = max(due, now)
+    post(world, k, max(due, now))

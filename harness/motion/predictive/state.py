@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.motion.predictive.codes import NeighbourSearch, ResponseCode
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Indices = NDArray[np.uint32]  # unsigned: the compiled code then need not ask whether an index counts from the end
@@ -18,6 +20,7 @@ Records = Any  # an array of one of the types below; mypy knows no fields
 Record = Any  # one of its elements
 
 LINE = 64  # bytes of a cache line
+NOBODY = -1  # in place of a body, or of a window
 
 # A sphere's motion: 64 bytes, one cache line.
 MOTION = np.dtype(
@@ -39,7 +42,8 @@ SCHEDULE = np.dtype(
         ("hits", np.int32),  # how often the velocity changed: an event made for another count is stale
         ("partner", np.int32),  # the pair candidate, -1: none
         ("partner_hits", np.int32),  # its hits when it was looked at
-        ("kind", np.int32),  # of the scheduled event
+        ("kind", np.int16),  # of the scheduled event, an `Event`
+        ("face", np.int16),  # that it is about, of the box or of the cell: x-, x+, y-, y+, z-, z+
         ("label", np.int32),  # the caller's numbering, which breaks ties
         ("burst", np.int32),  # hits in no time
         ("cell", np.int32, 3),  # along x, y, z
@@ -125,14 +129,6 @@ CANDIDATES = np.dtype(
 CAPACITY = 31
 NEIGHBOURS = np.dtype([("count", np.uint32), ("who", np.uint32, CAPACITY)], align=True)
 
-# What a sphere's scheduled event is. Walls and crossings add 2 * axis + (1 if moving up the axis). A search is for the
-# contact of a shape inside its bounding sphere.
-SEARCH, FRESH, PAIR, WALL, CROSSING, RENEWAL, NOTHING = -1, 0, 1, 2, 8, 14, 15
-
-# Where neighbours come from, and what a touch does.
-CELLS, LISTS = 0, 1
-NONE, REFLECT, ELASTIC = 0, 1, 2
-
 
 class Spheres(NamedTuple):
     """n spheres.
@@ -175,8 +171,8 @@ class Rules(NamedTuple):
     """What stays the same during a run."""
 
     half_box: Floats  # (3,)
-    method: int
-    response: int
+    neighbours: NeighbourSearch
+    response: ResponseCode
     restitution: float
     skin: float
     contact_time: float  # s: a pair hit this soon after another is answered elastically

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from harness.kernel import step
-from harness.motion.predictive.state import NOTHING, PAIR, WALL, Agenda, Records
+from harness.motion.predictive.codes import Event
+from harness.motion.predictive.state import Agenda, Records
 
 NEVER = int(np.array(np.inf).view(np.int64))
 
@@ -64,25 +65,15 @@ def match(agenda: Agenda, schedule: Records, node: int) -> None:
 @step
 def precedes(schedule: Records, a: int, b: int) -> bool:
     """Whether sphere a's event comes before sphere b's of the same time: by kind, then i, then j."""
-    kind_a, first_a, second_a = key(schedule, a)
-    kind_b, first_b, second_b = key(schedule, b)
-    if kind_a != kind_b:
-        return kind_a < kind_b
-    if first_a != first_b:
-        return first_a < first_b
-    return second_a < second_b
+    return rank(schedule, a) < rank(schedule, b)
 
 
 @step
-def key(schedule: Records, k: int) -> tuple[int, int, int]:
-    """What breaks ties: kind (fresh, pair, wall, the rest), lower and higher label, or label and face."""
-    kind = schedule[k].kind
-    label = schedule[k].label
-    if kind == PAIR:
-        partner = schedule[schedule[k].partner].label
-        return PAIR, min(label, partner), max(label, partner)
-    if kind < PAIR:
-        return kind, label, 0
-    if kind < WALL + 6:
-        return WALL, label, kind - WALL
-    return NOTHING, label, kind
+def rank(schedule: Records, k: int) -> tuple[int, int, int]:
+    """What breaks ties: kind (unscheduled, pair, wall, the rest), lower and higher label."""
+    own = schedule[k]
+    first = second = own.label
+    if own.kind == Event.PAIR:
+        partner = schedule[own.partner].label
+        first, second = min(first, partner), max(first, partner)
+    return min(int(own.kind), Event.CROSSING.value), first, second

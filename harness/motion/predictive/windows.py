@@ -14,14 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.kernel import step
-from harness.motion.predictive.state import Ints, Record, Records
-
-# What a window, or a body's way to a wall, waits for: a search for the contact of bodies that are apart; a closer one,
-# where their hulls are near each other; a search for the contact of bodies whose spheres overlap when they are first
-# looked at, so that they may be touching; a search for the end of a contact; that end; the hit that a search has found.
-APART, NEAR, UNSURE, TOUCHING, PARTING, DUE = range(6)
-
-NOBODY = -1
+from harness.motion.predictive.codes import Phase
+from harness.motion.predictive.state import NOBODY, Ints, Record, Records
 
 WINDOW = np.dtype(
     [
@@ -29,7 +23,7 @@ WINDOW = np.dtype(
         ("end", np.float64),  # s, after which the pair is silent
         ("other", np.int32),  # the other body
         ("other_hits", np.int32),  # its hits when the window was opened
-        ("phase", np.int32),
+        ("phase", np.int32),  # a `Phase`
         ("next", np.int32),  # the next window of the same body, or the next free one
     ],
     align=True,
@@ -181,7 +175,7 @@ def next_due(windows: Windows, schedule: Records, k: int) -> int:
 @step
 def sooner(window: Record, than: Record, schedule: Records) -> bool:
     """Whether a window comes before another of the same body and time."""
-    due, than_due = window.phase == DUE, than.phase == DUE
+    due, than_due = window.phase == Phase.DUE, than.phase == Phase.DUE
     if due != than_due:
         return bool(than_due)
     return bool(schedule[window.other].label < schedule[than.other].label)
