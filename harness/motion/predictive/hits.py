@@ -48,8 +48,8 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     else:
         virial = flip(motions[i], motions[j], schedule[i].mass, schedule[j].mass)
     add(tally.sums[0].pair_virial, virial)
-    note_hit(world, i, now, rules.blink)
-    note_hit(world, j, now, rules.blink)
+    note_hit(world, i, now, rules.burst_window)
+    note_hit(world, j, now, rules.burst_window)
     counts.pair_hits += 1
     record(world, now, PAIR_EVENT, schedule[i].label, schedule[j].label, -1)
     return True

@@ -52,8 +52,8 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     window.time = now + time
     # What has just parted cannot touch but by rounding
     if verdict == STALLED or (phase == Phase.PARTING and time == 0.0):
-        if time < world.rules.pause:
-            window.time = now + world.rules.pause
+        if time < world.rules.cooldown:
+            window.time = now + world.rules.cooldown
             counts.stalled_events += 1
     elif coarse:
         window.phase = Phase.NEAR
@@ -78,6 +78,6 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     window.time = now + found.time
     if found.verdict == IMPACT:
         window.phase = Phase.DUE
-    elif found.time < rules.pause:
-        window.time = now + rules.pause
+    elif found.time < rules.cooldown:
+        window.time = now + rules.cooldown
         counts.stalled_events += 1

@@ -48,11 +48,11 @@ SKIN = 0.65
 # A pair hit this soon after another, in the time a mean sphere flies its radius, is part of one lasting contact (TC
 # model).
 CONTACT = 1e-6
-# What a stalled sphere waits, in the same unit, and how many hits in no time make it stall. Elastic ones come to an end
-# and may be many; but in a crystal without room each sphere would take that many, so they are shared among all.
-PAUSE = 1e-3
-BURST = {ResponseCode.NONE: 1000, ResponseCode.REFLECT: 1000, ResponseCode.ELASTIC: 1_000_000}
-BURST_LEAST = 100
+# What a stalled sphere waits, in the same unit, and how many hits a burst may have. Elastic bursts come to an end
+# and may be long; but in a crystal without room each sphere would take that many hits, so they are shared among all.
+COOLDOWN = 1e-3
+BURST_LIMIT = {ResponseCode.NONE: 1000, ResponseCode.REFLECT: 1000, ResponseCode.ELASTIC: 1_000_000}
+LEAST_BURST_LIMIT = 100
 # Events to one re-basing of time, for each sphere and for each run; with response none every sphere must look again
 # then.
 SPAN, SPAN_NONE, SPAN_LEAST = 16, 64, 64
@@ -145,9 +145,9 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
         restitution=restitution,
         skin=skin,
         contact_time=CONTACT * instant,
-        blink=CONTACT * instant if answer == ResponseCode.REFLECT else 0.0,
-        pause=PAUSE * instant,
-        burst=max(BURST[answer] // max(n, 1), BURST_LEAST) if answer == ResponseCode.ELASTIC else BURST[answer],
+        burst_window=CONTACT * instant if answer == ResponseCode.REFLECT else 0.0,
+        cooldown=COOLDOWN * instant,
+        burst_limit=burst_limit(answer, n),
         touching=TOUCHING * float(start.half_box.max()),
         span=SPAN_LEAST + (SPAN_NONE if answer == ResponseCode.NONE else SPAN) * n,
         crowded=n >= MULTITUDE[neighbours],
@@ -164,6 +164,12 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
         journal=np.zeros(CHUNK if record else 0, dtype=EVENT),
         scratch=Scratch(found=np.zeros(n + 2, dtype=np.uint32), lanes=aligned(1, CANDIDATES)),
     )
+
+
+def burst_limit(response: ResponseCode, n: int) -> int:
+    """Hits of one burst that each of n spheres may have."""
+    limit = BURST_LIMIT[response]
+    return max(limit // max(n, 1), LEAST_BURST_LIMIT) if response == ResponseCode.ELASTIC else limit
 
 
 def agenda(n: int) -> Agenda:

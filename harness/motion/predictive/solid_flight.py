@@ -11,7 +11,7 @@ from math import inf, sqrt
 
 from harness.kernel import kernel, step
 from harness.motion.predictive import windows
-from harness.motion.predictive.burst import patience
+from harness.motion.predictive.burst import cooldown
 from harness.motion.predictive.cells import ALL, AROUND, cross, next_face
 from harness.motion.predictive.clock import catch_up, relative
 from harness.motion.predictive.clock import shift as shift_spheres
@@ -107,7 +107,7 @@ def meet(solid: SolidWorld, k: int, w: int, now: float) -> bool:
     """Body k and the other of its window w touch. Returns whether they answer."""
     world, window = solid.world, solid.windows.pool[w]
     p = int(window.other)
-    wait = max(patience(world, k, now), patience(world, p, now))
+    wait = max(cooldown(world, k, now), cooldown(world, p, now))
     if wait > 0.0:
         window.time = now + wait
         world.tally.counts[0].stalled_events += 1
@@ -127,7 +127,7 @@ def meet_wall(solid: SolidWorld, k: int, face: int, now: float) -> bool:
     """Body k touches a wall, or its sphere does where only that is reflected. Returns whether it turns back."""
     world = solid.world
     axis = face // 2
-    wait = patience(world, k, now)
+    wait = cooldown(world, k, now)
     if wait > 0.0:
         solid.windows.walls[k, axis].time = now + wait
         world.tally.counts[0].stalled_events += 1

@@ -15,8 +15,8 @@ from harness.scene.box import Box
 SEARCHES = ("narrow_tests", "box_tests", "advancement_steps")
 # Windows that a body has room for at first.
 WINDOWS = 6
-# Hits in no time that make a body stall: fewer than of spheres, as each costs the searches of all that overlap.
-BURST = {"none": 30, "reflect": 1000, "elastic": 10_000}
+# Hits that a collision burst may have: fewer than of spheres, as each costs the searches of all that overlap.
+BURST_LIMIT = {"none": 30, "reflect": 1000, "elastic": 10_000}
 
 
 class SolidSimulation(Simulation):
@@ -55,7 +55,9 @@ class SolidSimulation(Simulation):
             search="cells",
         )
         # The narrow search takes the time, not the memory: no need to keep neighbours together
-        self._world = self._world._replace(rules=self._world.rules._replace(tidying=0, burst=BURST[response]))
+        self._world = self._world._replace(
+            rules=self._world.rules._replace(tidying=0, burst_limit=BURST_LIMIT[response])
+        )
         order = self._world.spheres.schedule["label"]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64

@@ -45,7 +45,7 @@ SCHEDULE = np.dtype(
         ("kind", np.int16),  # of the scheduled event, an `Event`
         ("face", np.int16),  # that it is about, of the box or of the cell: x-, x+, y-, y+, z-, z+
         ("label", np.int32),  # the caller's numbering, which breaks ties
-        ("burst", np.int32),  # hits in no time
+        ("burst_hits", np.int32),  # of the present collision burst
         ("cell", np.int32, 3),  # along x, y, z
         ("grid", np.int32),
     ],
@@ -176,9 +176,9 @@ class Rules(NamedTuple):
     restitution: float
     skin: float
     contact_time: float  # s: a pair hit this soon after another is answered elastically
-    blink: float  # s: pair hits of a sphere that follow each other this soon come in no time
-    pause: float  # s: what a stalled sphere waits
-    burst: int  # hits in no time that a sphere may have
+    burst_window: float  # s: a pair hit of a sphere this soon after another belongs to one collision burst
+    cooldown: float  # s: what a sphere waits before a hit beyond the limit
+    burst_limit: int  # hits of one burst that a sphere may have
     touching: float  # m: gaps below this are contact (response none)
     span: int  # events from one re-basing of time to the next
     crowded: bool  # too many for the cache
