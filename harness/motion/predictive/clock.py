@@ -43,23 +43,23 @@ def rebase(world: World) -> None:
         for k in range(world.spheres.motions.size):
             catch_up(world, k, base)
             world.spheres.schedule[k].kind = Event.UNSCHEDULED
-            world.agenda.times[world.agenda.times.size // 2 + k] = base
+            world.queue.times[world.queue.times.size // 2 + k] = base
     shift(world)
 
 
 @step
 def shift(world: World) -> None:
     """Count all times from the present."""
-    clock, agenda = world.tally.clock[0], world.agenda
+    clock, queue = world.tally.clock[0], world.queue
     base = clock.now
-    leaf = agenda.times.size // 2
+    leaf = queue.times.size // 2
     for k in range(world.spheres.motions.size):
         world.spheres.motions[k].time -= base
         world.spheres.schedule[k].last_hit -= base
         world.spheres.schedule[k].pair_time -= base
         world.spheres.contacts[k] -= base
         world.cells.renewals[k] -= base
-        agenda.times[leaf + k] -= base
+        queue.times[leaf + k] -= base
     whole = clock.epoch + base
     # Exact remainder of the addition (Dekker), as the base is never larger than the new epoch
     clock.epoch_rest += (clock.epoch - whole) + base if clock.epoch >= base else (base - whole) + clock.epoch
@@ -68,4 +68,4 @@ def shift(world: World) -> None:
     clock.now = 0.0
     world.tally.counts[0].since_rebasing = 0
     world.tally.counts[0].rebasings += 1
-    tournament.rebuild(agenda, world.spheres.schedule)
+    tournament.rebuild(queue, world.spheres.schedule)

@@ -29,14 +29,14 @@ class FollowUp(NamedTuple):
 def reason_to_stop(world: World, limit: float, budget: int) -> Stop:
     """Why the next event must not happen, if there is a reason."""
     counts = world.tally.counts[0]
-    now = world.agenda.times[1]
+    now = world.queue.times[1]
     if not now <= limit or now == inf:
         return Stop.REACHED
     if counts.pair_hits + counts.box_hits >= budget:
         return Stop.SPENT
     if counts.since_rebasing >= world.rules.span and now > world.tally.clock[0].now:
         return Stop.REBASE
-    if counts.recorded == world.journal.size and counts.recorded > 0:
+    if counts.recorded == world.log.size and counts.recorded > 0:
         return Stop.FULL
     return Stop.NOT
 
@@ -51,5 +51,5 @@ def begin(world: World, now: float) -> None:
 @step
 def post(world: World, k: int, due: float) -> None:
     """Put the time of body k's event into its leaf, and the tree in order."""
-    world.agenda.times[world.agenda.times.size // 2 + k] = due
-    tournament.replay(world.agenda, world.spheres.schedule, k)
+    world.queue.times[world.queue.times.size // 2 + k] = due
+    tournament.update(world.queue, world.spheres.schedule, k)

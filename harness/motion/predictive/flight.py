@@ -37,13 +37,13 @@ def populate(world: World, settled: bool) -> None:
             insert(world.cells, world.spheres.schedule, k)
         else:
             settle(world.cells, world.spheres, k)
-    tournament.rebuild(world.agenda, world.spheres.schedule)
+    tournament.rebuild(world.queue, world.spheres.schedule)
 
 
 @loop
 def fly(world: World, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
-    agenda, rules, clock = world.agenda, world.rules, world.tally.clock[0]
+    queue, rules, clock = world.queue, world.rules, world.tally.clock[0]
     limit = relative(clock, until)
     while True:
         stop = reason_to_stop(world, limit, budget)
@@ -55,8 +55,8 @@ def fly(world: World, until: float, budget: int) -> Stop:
             continue
         if stop != Stop.NOT:
             return stop
-        k = int(agenda.winners[1])
-        now = agenda.times[1]
+        k = int(queue.winners[1])
+        now = queue.times[1]
         if defer_if_stalled(world, k, now):
             continue
         begin(world, now)

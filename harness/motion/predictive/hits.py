@@ -106,8 +106,8 @@ def turn_back(world: World, k: int, face: int, now: float) -> None:
 def record(world: World, now: float, kind: int, i: int, j: int, wall: int) -> None:
     """Write an event down, if somebody reads it."""
     counts = world.tally.counts[0]
-    if world.journal.size > 0:
-        event = world.journal[counts.recorded]
+    if world.log.size > 0:
+        event = world.log[counts.recorded]
         event.time = absolute(world.tally.clock[0], now)
         event.kind = kind
         event.i = i

@@ -22,13 +22,13 @@ def look_ahead(world: World, k: int) -> None:
 
     The winner at a node of level m is due within the next 2^m events or so.
     """
-    agenda, spheres = world.agenda, world.spheres
-    leaf = agenda.order.size // 2 + k
-    soon = int(agenda.winners[leaf >> max(world.rules.depth - SPHERE_LEVEL, 0)])
+    queue, spheres = world.queue, world.spheres
+    leaf = queue.time_bits.size // 2 + k
+    soon = int(queue.winners[leaf >> max(world.rules.depth - SPHERE_LEVEL, 0)])
     fetch(spheres.motions, soon)
     fetch(spheres.schedule, soon)
-    fetch_around(world, int(agenda.winners[leaf >> max(world.rules.depth - AROUND_LEVEL, 0)]))
-    fetch_neighbours(world, int(agenda.winners[leaf >> max(world.rules.depth - NEIGHBOURS_LEVEL, 0)]))
+    fetch_around(world, int(queue.winners[leaf >> max(world.rules.depth - AROUND_LEVEL, 0)]))
+    fetch_neighbours(world, int(queue.winners[leaf >> max(world.rules.depth - NEIGHBOURS_LEVEL, 0)]))
 
 
 @step

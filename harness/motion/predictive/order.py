@@ -39,12 +39,12 @@ def spread(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 def tidy(world: World) -> None:
     """Put the spheres of a running world in order again; they stand in no cell afterwards."""
-    spheres, agenda, cells, lists = world.spheres, world.agenda, world.cells, world.lists
+    spheres, queue, cells, lists = world.spheres, world.queue, world.cells, world.lists
     count = len(spheres.motions)
     order = along_curve(positions_at(world, float(world.tally.clock["now"][0])), world.rules.half_box)
     moved_to = np.empty(count, dtype=np.int64)
     moved_to[order] = np.arange(count)
-    leaves = agenda.times[len(agenda.times) // 2 :][:count]
+    leaves = queue.times[len(queue.times) // 2 :][:count]
     for array in (spheres.motions, spheres.schedule, spheres.contacts, cells.renewals, leaves):
         array[:] = array[order]
     partners = spheres.schedule["partner"]

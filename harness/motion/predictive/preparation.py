@@ -22,7 +22,7 @@ from harness.motion.predictive.state import (
     SCHEDULE,
     SUM,
     SUMS,
-    Agenda,
+    EventQueue,
     Floats,
     Lists,
     Records,
@@ -156,12 +156,12 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
     )
     return World(
         spheres=Spheres(motions, schedule, contacts=np.full(n, -np.inf)),
-        agenda=agenda(n),
+        queue=unscheduled(n),
         cells=build(start.half_box, start.radii, skin),
         lists=lists(motions, neighbours),
         rules=rules,
         tally=tally(),
-        journal=np.zeros(CHUNK if record else 0, dtype=EVENT),
+        log=np.zeros(CHUNK if record else 0, dtype=EVENT),
         scratch=Scratch(found=np.zeros(n + 2, dtype=np.uint32), lanes=aligned(1, CANDIDATES)),
     )
 
@@ -172,16 +172,16 @@ def burst_limit(response: ResponseCode, n: int) -> int:
     return max(limit // max(n, 1), LEAST_BURST_LIMIT) if response == ResponseCode.ELASTIC else limit
 
 
-def agenda(n: int) -> Agenda:
-    """Nobody has looked yet."""
+def unscheduled(n: int) -> EventQueue:
+    """All events unscheduled."""
     leaves = 1 << max(n - 1, 1).bit_length()
     times = np.full(2 * leaves, np.inf)
     times[leaves : leaves + n] = 0.0
     winners = np.zeros(2 * leaves, dtype=np.int32)
     winners[leaves : leaves + n] = np.arange(n)
-    return Agenda(
+    return EventQueue(
         times=times,
-        order=times.view(np.int64),
+        time_bits=times.view(np.int64),
         winners=winners,
     )
 

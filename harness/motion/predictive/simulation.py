@@ -195,7 +195,7 @@ class Simulation:
 
     def _drain(self) -> NDArray[np.void]:
         counts = self._world.tally.counts[0]
-        chunk: NDArray[np.void] = self._world.journal[: counts["recorded"]].copy()
+        chunk: NDArray[np.void] = self._world.log[: counts["recorded"]].copy()
         counts["recorded"] = 0
         return chunk
 
@@ -209,9 +209,9 @@ class Simulation:
         motions = world.spheres.motions
         motions["position"] = positions_at(world, now)
         motions["time"] = now
-        leaves = len(world.agenda.times) // 2
+        leaves = len(world.queue.times) // 2
         world.spheres.schedule["kind"] = Event.UNSCHEDULED
-        world.agenda.times[leaves : leaves + len(self)] = now
+        world.queue.times[leaves : leaves + len(self)] = now
         self._world = world._replace(
             cells=cells.build(self._start.half_box, self._start.radii, 0.0),
             lists=lists(motions, NeighbourSearch.CELLS),

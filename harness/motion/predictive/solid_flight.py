@@ -30,7 +30,7 @@ from harness.motion.predictive.windows import find, holds, next_due
 def fly_solids(solid: SolidWorld, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
     world = solid.world
-    agenda, schedule, clock = world.agenda, world.spheres.schedule, world.tally.clock[0]
+    queue, schedule, clock = world.queue, world.spheres.schedule, world.tally.clock[0]
     limit = relative(clock, until)
     while True:
         stop = reason_to_stop(world, limit, budget)
@@ -44,8 +44,8 @@ def fly_solids(solid: SolidWorld, until: float, budget: int) -> Stop:
             return stop
         if solid.windows.free[0].count < 2 * schedule.size:
             return Stop.NO_ROOM
-        k = int(agenda.winners[1])
-        now = agenda.times[1]
+        k = int(queue.winners[1])
+        now = queue.times[1]
         begin(world, now)
         after = FollowUp(Task.KEEP, NOBODY, AROUND)
         if schedule[k].kind == Event.SEARCH:

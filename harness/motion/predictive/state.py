@@ -84,7 +84,7 @@ COUNTS = np.dtype(
             "advancement_steps",
             "rebasings",  # of time
             "since_rebasing",  # events, searches and crossings included
-            "recorded",  # events in the journal
+            "recorded",  # events in the log
         )
     ],
     align=True,
@@ -143,11 +143,11 @@ class Spheres(NamedTuple):
     contacts: Floats
 
 
-class Agenda(NamedTuple):
-    """The event each sphere holds, under a tournament tree: leaf n_leaves + k is sphere k, node 1 the next event."""
+class EventQueue(NamedTuple):
+    """A tournament tree over the events of the spheres: leaf n_leaves + k is sphere k's, node 1 the next of all."""
 
     times: Floats  # (2 n_leaves,) never negative, so that their bits, read as integers, are in the same order
-    order: Longs  # (2 n_leaves,) those bits, in the same memory: the tree climbs 1.5 times as fast on integers
+    time_bits: Longs  # (2 n_leaves,) those bits, in the same memory: the tree climbs 1.5 times as fast on integers
     winners: Ints  # (2 n_leaves,)
 
 
@@ -207,12 +207,12 @@ class World(NamedTuple):
     """All of it."""
 
     spheres: Spheres
-    agenda: Agenda
+    queue: EventQueue
     cells: Cells
     lists: Lists
     rules: Rules
     tally: Tally
-    journal: Records  # a chunk of recorded EVENTs; no room means no recording
+    log: Records  # a chunk of recorded EVENTs; no room means no recording
     scratch: Scratch
 
 
