@@ -44,7 +44,7 @@ def defer_if_stalled(world: World, k: int, now: float) -> bool:
     if own.kind == Event.PAIR:
         own.pair_time = now + wait
     post(world, k, now + wait)
-    world.tally.counts[0].stalled_events += 1
+    world.totals.counts[0].stalled_events += 1
     return True
 
 

@@ -39,7 +39,7 @@ def rebase(world: World) -> None:
     """Make the present the origin of time. Done every so many events, however the run is cut into pieces."""
     if world.rules.response == ResponseCode.NONE:
         # Onset times are known again by their bits; those of moved spheres differ, so all look again
-        base = world.tally.clock[0].now
+        base = world.totals.clock[0].now
         for k in range(world.spheres.motions.size):
             catch_up(world, k, base)
             world.spheres.schedule[k].kind = Event.UNSCHEDULED
@@ -50,22 +50,22 @@ def rebase(world: World) -> None:
 @step
 def shift(world: World) -> None:
     """Count all times from the present."""
-    clock, queue = world.tally.clock[0], world.queue
+    clock, queue = world.totals.clock[0], world.queue
     base = clock.now
     leaf = queue.times.size // 2
     for k in range(world.spheres.motions.size):
         world.spheres.motions[k].time -= base
         world.spheres.schedule[k].last_hit -= base
         world.spheres.schedule[k].pair_time -= base
-        world.spheres.contacts[k] -= base
+        world.spheres.last_contacts[k] -= base
         world.cells.renewals[k] -= base
         queue.times[leaf + k] -= base
     whole = clock.epoch + base
     # Exact remainder of the addition (Dekker), as the base is never larger than the new epoch
     clock.epoch_rest += (clock.epoch - whole) + base if clock.epoch >= base else (base - whole) + clock.epoch
     clock.epoch = whole
-    world.tally.onset[0].time -= base
+    world.totals.onset[0].time -= base
     clock.now = 0.0
-    world.tally.counts[0].since_rebasing = 0
-    world.tally.counts[0].rebasings += 1
+    world.totals.counts[0].since_rebasing = 0
+    world.totals.counts[0].rebasings += 1
     tournament.rebuild(queue, world.spheres.schedule)

@@ -28,13 +28,13 @@ class FollowUp(NamedTuple):
 @step
 def reason_to_stop(world: World, limit: float, budget: int) -> Stop:
     """Why the next event must not happen, if there is a reason."""
-    counts = world.tally.counts[0]
+    counts = world.totals.counts[0]
     now = world.queue.times[1]
     if not now <= limit or now == inf:
         return Stop.REACHED
     if counts.pair_hits + counts.box_hits >= budget:
         return Stop.SPENT
-    if counts.since_rebasing >= world.rules.span and now > world.tally.clock[0].now:
+    if counts.since_rebasing >= world.rules.events_per_base and now > world.totals.clock[0].now:
         return Stop.REBASE
     if counts.recorded == world.log.size and counts.recorded > 0:
         return Stop.FULL
@@ -44,8 +44,8 @@ def reason_to_stop(world: World, limit: float, budget: int) -> Stop:
 @step
 def begin(world: World, now: float) -> None:
     """The next event happens."""
-    world.tally.clock[0].now = now
-    world.tally.counts[0].since_rebasing += 1
+    world.totals.clock[0].now = now
+    world.totals.counts[0].since_rebasing += 1
 
 
 @step

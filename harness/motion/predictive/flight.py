@@ -43,14 +43,14 @@ def populate(world: World, settled: bool) -> None:
 @loop
 def fly(world: World, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
-    queue, rules, clock = world.queue, world.rules, world.tally.clock[0]
+    queue, rules, clock = world.queue, world.rules, world.totals.clock[0]
     limit = relative(clock, until)
     while True:
         stop = reason_to_stop(world, limit, budget)
         if stop == Stop.REBASE:
             rebase(world)
             limit = relative(clock, until)
-            if rules.tidying > 0 and world.tally.counts[0].rebasings % rules.tidying == 0:
+            if rules.bases_per_order > 0 and world.totals.counts[0].rebasings % rules.bases_per_order == 0:
                 return Stop.REORDER
             continue
         if stop != Stop.NOT:
@@ -69,14 +69,14 @@ def fly(world: World, until: float, budget: int) -> Stop:
             if who >= 0:
                 look(world, who, now, after)
                 schedule_next(world, who, now)
-                if rules.crowded:
+                if rules.prefetching:
                     look_ahead(world, who)
 
 
 @step
 def happen(world: World, k: int, now: float) -> FollowUp:
     """Carry out sphere k's event."""
-    schedule, counts = world.spheres.schedule, world.tally.counts[0]
+    schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
     task = Task.PREDICT
     other = NOBODY
@@ -110,7 +110,7 @@ def look(world: World, k: int, now: float, after: FollowUp) -> None:
 
     After a crossing its pair candidate stands, and only the new layer of cells is looked at.
     """
-    schedule, counts = world.spheres.schedule, world.tally.counts[0]
+    schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
     candidates = world.scratch.found
     if world.rules.neighbours == NeighbourSearch.LISTS:

@@ -9,14 +9,14 @@ from harness.motion.predictive.codes import ResponseCode
 from harness.motion.predictive.numerics import approaches
 from harness.motion.predictive.response import bounce, flip
 from harness.motion.predictive.state import PAIR_EVENT, WALL_EVENT, World
-from harness.motion.predictive.tally import add
+from harness.motion.predictive.sums import add
 
 
 @step
 def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     """Answer a pair if it still approaches. The labels order the two, so that it does not matter who held the event."""
-    spheres, rules, tally = world.spheres, world.rules, world.tally
-    motions, schedule, counts = spheres.motions, spheres.schedule, tally.counts[0]
+    spheres, rules, totals = world.spheres, world.rules, world.totals
+    motions, schedule, counts = spheres.motions, spheres.schedule, totals.counts[0]
     catch_up(world, k, now)
     catch_up(world, p, now)
     if not approaches(
@@ -35,19 +35,19 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
         restitution = rules.restitution
         if restitution < 1.0:
             # TC model: a contact so soon after another belongs to the same lasting contact, and loses nothing more
-            if now - max(spheres.contacts[i], spheres.contacts[j]) < rules.contact_time:
+            if now - max(spheres.last_contacts[i], spheres.last_contacts[j]) < rules.contact_time:
                 restitution = 1.0
                 counts.guarded_hits += 1
-            spheres.contacts[i] = now
-            spheres.contacts[j] = now
+            spheres.last_contacts[i] = now
+            spheres.last_contacts[j] = now
         left = bounce(motions[i], motions[j], schedule[i].mass, schedule[j].mass, restitution)
         virial = left.virial
         if left.lost > 0.0:
-            add(tally.sums[0].lost_energy, left.lost)
-            add(tally.sums[0].lost_energy_time, left.lost * absolute(tally.clock[0], now))
+            add(totals.sums[0].lost_energy, left.lost)
+            add(totals.sums[0].lost_energy_time, left.lost * absolute(totals.clock[0], now))
     else:
         virial = flip(motions[i], motions[j], schedule[i].mass, schedule[j].mass)
-    add(tally.sums[0].pair_virial, virial)
+    add(totals.sums[0].pair_virial, virial)
     note_hit(world, i, now, rules.burst_window)
     note_hit(world, j, now, rules.burst_window)
     counts.pair_hits += 1
@@ -58,14 +58,14 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
 @step
 def begin_to_touch(world: World, k: int, p: int, now: float) -> None:
     """Nothing answers: note the onset, once, although both spheres may hold it."""
-    last = world.tally.onset[0]
+    last = world.totals.onset[0]
     i = min(world.spheres.schedule[k].label, world.spheres.schedule[p].label)
     j = max(world.spheres.schedule[k].label, world.spheres.schedule[p].label)
     if now != last.time or i != last.i or j != last.j:
         last.time = now
         last.i = i
         last.j = j
-        world.tally.counts[0].pair_hits += 1
+        world.totals.counts[0].pair_hits += 1
         record(world, now, PAIR_EVENT, i, j, -1)
 
 
@@ -91,24 +91,24 @@ def reach_plane(world: World, k: int, face: int, plane: float, now: float) -> No
 @step
 def turn_back(world: World, k: int, face: int, now: float) -> None:
     """Mirror the velocity of sphere k, whose position is that of the present, at a face."""
-    motion, tally = world.spheres.motions[k], world.tally
+    motion, totals = world.spheres.motions[k], world.totals
     axis = face // 2
     impulse = 2.0 * world.spheres.schedule[k].mass * abs(motion.velocity[axis])
     motion.velocity[axis] = -motion.velocity[axis]
-    add(tally.walls[face], impulse)
-    add(tally.sums[0].wall_virial, impulse * motion.position[axis] * (1.0 if face % 2 == 1 else -1.0))
+    add(totals.wall_impulses[face], impulse)
+    add(totals.sums[0].wall_virial, impulse * motion.position[axis] * (1.0 if face % 2 == 1 else -1.0))
     note_hit(world, k, now, 0.0)
-    tally.counts[0].box_hits += 1
+    totals.counts[0].box_hits += 1
     record(world, now, WALL_EVENT, world.spheres.schedule[k].label, -1, face)
 
 
 @step
 def record(world: World, now: float, kind: int, i: int, j: int, wall: int) -> None:
     """Write an event down, if somebody reads it."""
-    counts = world.tally.counts[0]
+    counts = world.totals.counts[0]
     if world.log.size > 0:
         event = world.log[counts.recorded]
-        event.time = absolute(world.tally.clock[0], now)
+        event.time = absolute(world.totals.clock[0], now)
         event.kind = kind
         event.i = i
         event.j = j

@@ -15,7 +15,7 @@ from harness.narrowphase.parting import time_of_mesh_parting, time_of_parting
 def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     """Find the hit of body k in its window w, which is due; close the window if there is none."""
     world, body = solid.world, solid.body
-    motions, schedule, counts = world.spheres.motions, world.spheres.schedule, world.tally.counts[0]
+    motions, schedule, counts = world.spheres.motions, world.spheres.schedule, world.totals.counts[0]
     window, warm = solid.windows.pool[w], solid.windows.starts[w]
     p = int(window.other)
     # The labels order the two, so that it does not matter who holds the window
@@ -67,7 +67,7 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
 def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     """Find the hit of body k on the wall ahead along an axis."""
     world, body = solid.world, solid.body
-    counts, rules, window = world.tally.counts[0], world.rules, solid.windows.walls[k, axis]
+    counts, rules, window = world.totals.counts[0], world.rules, solid.windows.walls[k, axis]
     face = 2 * axis + (1 if world.spheres.motions[k].velocity[axis] > 0.0 else 0)
     flight = motion_of(body, world.spheres.motions, k, now)
     found = time_of_wall_impact(

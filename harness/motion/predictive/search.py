@@ -75,7 +75,7 @@ def first_onset(world: World, k: int, now: float, candidates: Indices, count: in
     The time depends on the two motions alone, not on when it is asked for: whichever of the two spheres asks, and
     however often, the answer is the same to the bit. So an onset that was recorded is known by its time and pair.
     """
-    motions, schedule, last = world.spheres.motions, world.spheres.schedule, world.tally.onset[0]
+    motions, schedule, last = world.spheres.motions, world.spheres.schedule, world.totals.onset[0]
     best, who = inf, -1
     for m in range(count):
         p = candidates[m]

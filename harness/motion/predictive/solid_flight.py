@@ -30,7 +30,7 @@ from harness.motion.predictive.windows import find, holds, next_due
 def fly_solids(solid: SolidWorld, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
     world = solid.world
-    queue, schedule, clock = world.queue, world.spheres.schedule, world.tally.clock[0]
+    queue, schedule, clock = world.queue, world.spheres.schedule, world.totals.clock[0]
     limit = relative(clock, until)
     while True:
         stop = reason_to_stop(world, limit, budget)
@@ -70,14 +70,14 @@ def search(solid: SolidWorld, k: int, now: float) -> None:
         search_pair(solid, k, held, now)
     else:
         windows.remove(solid.windows, k, held)
-        solid.world.tally.counts[0].stale_events += 1
+        solid.world.totals.counts[0].stale_events += 1
 
 
 @step
 def happen(solid: SolidWorld, k: int, now: float) -> FollowUp:
     """Carry out body k's event, other than a search."""
     world = solid.world
-    schedule, counts = world.spheres.schedule, world.tally.counts[0]
+    schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
     task = Task.KEEP
     other = NOBODY
@@ -110,7 +110,7 @@ def meet(solid: SolidWorld, k: int, w: int, now: float) -> bool:
     wait = max(cooldown(world, k, now), cooldown(world, p, now))
     if wait > 0.0:
         window.time = now + wait
-        world.tally.counts[0].stalled_events += 1
+        world.totals.counts[0].stalled_events += 1
         return False
     if world.rules.response == ResponseCode.NONE:
         begin_to_touch(world, k, p, now)
@@ -130,7 +130,7 @@ def meet_wall(solid: SolidWorld, k: int, face: int, now: float) -> bool:
     wait = cooldown(world, k, now)
     if wait > 0.0:
         solid.windows.walls[k, axis].time = now + wait
-        world.tally.counts[0].stalled_events += 1
+        world.totals.counts[0].stalled_events += 1
         return False
     if world.rules.response == ResponseCode.NONE:
         reach_plane(world, k, face, world.rules.half_box[axis] - 0.5 * solid.body.sizes[k], now)
@@ -149,9 +149,9 @@ def look(solid: SolidWorld, k: int, now: float, after: FollowUp) -> None:
     if anew:
         solid.windows.heads[k] = NOBODY
         look_at_walls(solid, k, now)
-        world.tally.counts[0].predictions += 1
+        world.totals.counts[0].predictions += 1
     count = gather(world, k, now, after.layer)
-    world.tally.counts[0].pair_tests += count - (after.layer.axis == ALL)
+    world.totals.counts[0].pair_tests += count - (after.layer.axis == ALL)
     for m in range(count):
         p = int(world.scratch.found[m])
         if p != k:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.motion.predictive.codes import Stop
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_flight import fly_solids
 from harness.motion.predictive.solids import Form, SolidWorld, solids
@@ -11,8 +12,6 @@ from harness.motion.predictive.windows import enlarged, windows
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
-# Counters of the narrow searches.
-SEARCHES = ("narrow_tests", "box_tests", "advancement_steps")
 # Windows that a body has room for at first.
 WINDOWS = 6
 # Hits that a collision burst may have: fewer than of spheres, as each costs the searches of all that overlap.
@@ -30,6 +29,9 @@ class SolidSimulation(Simulation):
     response, restitution, record : as of `Simulation`
     tolerance : gap, relative to the mean size of two bodies, at which surfaces count as touching
     """
+
+    # narrow tests are searches of pairs, each of some steps
+    COUNTERS = (*Simulation.COUNTERS, "narrow_tests", "box_tests", "advancement_steps")
 
     def __init__(
         self,
@@ -54,22 +56,16 @@ class SolidSimulation(Simulation):
             record,
             search="cells",
         )
-        # The narrow search takes the time, not the memory: no need to keep neighbours together
+        # The narrow search takes the time, not the memory: there is no need to keep neighbours together
         self._world = self._world._replace(
-            rules=self._world.rules._replace(tidying=0, burst_limit=BURST_LIMIT[response])
+            rules=self._world.rules._replace(bases_per_order=0, burst_limit=BURST_LIMIT[response])
         )
         order = self._world.spheres.schedule["label"]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64
         self._solid = SolidWorld(self._world, body, windows(len(bodies), room))
 
-    @property
-    def counters(self) -> dict[str, int]:
-        """How often what happened; `narrow_tests` are searches of pairs, each of some steps."""
-        counts = self._world.tally.counts[0]
-        return super().counters | {name: int(counts[name]) for name in SEARCHES}
-
-    def _fly(self, until: float, budget: int) -> int:
+    def _fly(self, until: float, budget: int) -> Stop:
         return fly_solids(self._solid, until, budget)
 
     def _make_room(self) -> None:

@@ -135,12 +135,12 @@ class Spheres(NamedTuple):
 
     motions : (n,) of MOTION
     schedule : (n,) of SCHEDULE
-    contacts : (n,) time of the last pair hit
+    last_contacts : (n,) s, time of the last pair hit
     """
 
     motions: Records
     schedule: Records
-    contacts: Floats
+    last_contacts: Floats
 
 
 class EventQueue(NamedTuple):
@@ -180,18 +180,18 @@ class Rules(NamedTuple):
     cooldown: float  # s: what a sphere waits before a hit beyond the limit
     burst_limit: int  # hits of one burst that a sphere may have
     touching: float  # m: gaps below this are contact (response none)
-    span: int  # events from one re-basing of time to the next
-    crowded: bool  # too many for the cache
+    events_per_base: int  # from one re-basing of time to the next
     depth: int  # levels of the tournament tree
-    tidying: int  # re-basings from one re-ordering of memory to the next, 0 = never
+    bases_per_order: int  # re-basings of time from one re-ordering of memory to the next, 0 = never
+    prefetching: bool  # the spheres are too many for the cache
 
 
-class Tally(NamedTuple):
-    """What has happened so far. All but the walls have one record."""
+class Totals(NamedTuple):
+    """What has happened so far. All but the wall impulses have one record."""
 
     counts: Records  # (1,) of COUNTS
     sums: Records  # (1,) of SUMS
-    walls: Records  # (6,) of SUM, kg m/s: impulses given to x-, x+, y-, y+, z-, z+
+    wall_impulses: Records  # (6,) of SUM, kg m/s, given to x-, x+, y-, y+, z-, z+
     clock: Records  # (1,) of CLOCK
     onset: Records  # (1,) of ONSET
 
@@ -211,7 +211,7 @@ class World(NamedTuple):
     cells: Cells
     lists: Lists
     rules: Rules
-    tally: Tally
+    totals: Totals
     log: Records  # a chunk of recorded EVENTs; no room means no recording
     scratch: Scratch
 
