@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from harness.kernel import step
 from harness.motion.predictive.codes import Event
-from harness.motion.predictive.events import post
+from harness.motion.predictive.events import enqueue
 from harness.motion.predictive.state import World
 
 
@@ -43,7 +43,7 @@ def defer_if_stalled(world: World, k: int, now: float) -> bool:
         return False
     if own.kind == Event.PAIR:
         own.pair_time = now + wait
-    post(world, k, now + wait)
+    enqueue(world, k, now + wait)
     world.totals.counts[0].stalled_events += 1
     return True
 

@@ -20,12 +20,12 @@ def relative(clock: Record, time: float) -> float:
 
 @step
 def absolute(clock: Record, now: float) -> float:
-    """Seconds since the start."""
+    """Seconds since the start, of a time counted from the base."""
     return float(clock.epoch + (clock.epoch_rest + now))
 
 
 @step
-def catch_up(world: World, k: int, now: float) -> None:
+def advance(world: World, k: int, now: float) -> None:
     """Move sphere k to the present."""
     motion = world.spheres.motions[k]
     flown = now - motion.time
@@ -36,19 +36,19 @@ def catch_up(world: World, k: int, now: float) -> None:
 
 @step
 def rebase(world: World) -> None:
-    """Make the present the origin of time. Done every so many events, however the run is cut into pieces."""
+    """Make the present the base of time. Done every so many events, however the run is cut into pieces."""
     if world.rules.response == ResponseCode.NONE:
-        # Onset times are known again by their bits; those of moved spheres differ, so all look again
-        base = world.totals.clock[0].now
+        # Onset times are known again by their bits; those of moved spheres differ, so all predict anew
+        now = world.totals.clock[0].now
         for k in range(world.spheres.motions.size):
-            catch_up(world, k, base)
+            advance(world, k, now)
             world.spheres.schedule[k].kind = Event.UNSCHEDULED
-            world.queue.times[world.queue.times.size // 2 + k] = base
-    shift(world)
+            world.queue.times[world.queue.times.size // 2 + k] = now
+    shift_times(world)
 
 
 @step
-def shift(world: World) -> None:
+def shift_times(world: World) -> None:
     """Count all times from the present."""
     clock, queue = world.totals.clock[0], world.queue
     base = clock.now
@@ -64,8 +64,8 @@ def shift(world: World) -> None:
     # Exact remainder of the addition (Dekker), as the base is never larger than the new epoch
     clock.epoch_rest += (clock.epoch - whole) + base if clock.epoch >= base else (base - whole) + clock.epoch
     clock.epoch = whole
-    world.totals.onset[0].time -= base
     clock.now = 0.0
+    world.totals.onset[0].time -= base
     world.totals.counts[0].since_rebasing = 0
     world.totals.counts[0].rebasings += 1
     tournament.rebuild(queue, world.spheres.schedule)

@@ -33,7 +33,7 @@ class ResponseCode(IntEnum):
 
 
 class Phase(IntEnum):
-    """What a window, or a body's way to a wall, waits for."""
+    """What a window, on a body or on a wall, waits for."""
 
     APART = 0  # a search for the contact of bodies that are apart
     NEAR = 1  # a closer one, where their hulls are near each other

@@ -1,4 +1,4 @@
-"""What the two event loops share: when they stop, what follows from an event, how the next one is written down."""
+"""What the two event loops share: when they stop, what follows from an event, how the next one gets into the queue."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ def reason_to_stop(world: World, limit: float, budget: int) -> Stop:
 
 @step
 def begin(world: World, now: float) -> None:
-    """The next event happens."""
+    """Set the clock to an event that is about to happen."""
     world.totals.clock[0].now = now
     world.totals.counts[0].since_rebasing += 1
 
 
 @step
-def post(world: World, k: int, due: float) -> None:
-    """Put the time of body k's event into its leaf, and the tree in order."""
+def enqueue(world: World, k: int, due: float) -> None:
+    """Put the time of body k's scheduled event into the queue, in place of its last one's."""
     world.queue.times[world.queue.times.size // 2 + k] = due
     tournament.update(world.queue, world.spheres.schedule, k)

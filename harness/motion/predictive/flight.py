@@ -1,8 +1,8 @@
-"""The loop: take the next event, let it happen, look for the next event of whom it concerned.
+"""The event loop of spheres: take the next event, carry it out, predict the next event of whom it concerned.
 
-Each sphere holds one event, its own earliest; a pair event is held by whichever of the two looked last, with the
+Each sphere holds one event, its own earliest; a pair event is held by whichever of the two predicted last, with the
 other's count of hits. A held event can only be too early (the partner flew elsewhere), never too late: whoever
-changes its velocity looks at all its neighbours. So an event that turns out stale costs one more look and nothing
+changes its velocity looks at all its neighbours. So an event that turns out stale costs one more prediction and nothing
 else.
 """
 
@@ -13,30 +13,30 @@ from math import inf
 from harness.kernel import loop, step
 from harness.motion.predictive import tournament
 from harness.motion.predictive.burst import defer_if_stalled
-from harness.motion.predictive.cells import AROUND, cross, insert, next_face, settle
-from harness.motion.predictive.clock import catch_up, rebase, relative
+from harness.motion.predictive.candidates import gather_candidates
+from harness.motion.predictive.cells import AROUND, cross, insert, insert_by_position, next_face
+from harness.motion.predictive.clock import advance, rebase, relative
 from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode, Stop, Task
-from harness.motion.predictive.events import FollowUp, begin, post, reason_to_stop
-from harness.motion.predictive.hits import begin_to_touch, hit_pair, hit_wall
-from harness.motion.predictive.lookahead import look_ahead
+from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
+from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
+from harness.motion.predictive.lookahead import prefetch_ahead
 from harness.motion.predictive.neighbours import renew, time_to_leave
 from harness.motion.predictive.numerics import time_to_plane
-from harness.motion.predictive.search import first_onset, first_touch
+from harness.motion.predictive.pair_search import first_onset, first_touch
 from harness.motion.predictive.state import NOBODY, World
-from harness.motion.predictive.surroundings import gather
 
 
 @loop
-def populate(world: World, settled: bool) -> None:
-    """Put all spheres into their cells: the ones of their records, or else those where their positions are.
+def populate(world: World, placed: bool) -> None:
+    """Put all spheres into their cells and rebuild the event queue.
 
-    Play all matches.
+    Placed spheres go into the cells that their records name, others into those where their positions are.
     """
     for k in range(world.spheres.motions.size):
-        if settled:
+        if placed:
             insert(world.cells, world.spheres.schedule, k)
         else:
-            settle(world.cells, world.spheres, k)
+            insert_by_position(world.cells, world.spheres, k)
     tournament.rebuild(world.queue, world.spheres.schedule)
 
 
@@ -60,22 +60,22 @@ def fly(world: World, until: float, budget: int) -> Stop:
         if defer_if_stalled(world, k, now):
             continue
         begin(world, now)
-        after = happen(world, k, now)
+        after = process_event(world, k, now)
         if after.task == Task.GIVE_UP:
             return Stop.NO_ROOM
-        # One place to look from, for the one or two spheres concerned: the search is inlined once.
+        # One call for the one or two spheres concerned, as the search is inlined wherever it is called
         for turn in range(2):
             who = k if turn == 0 else after.other
             if who >= 0:
-                look(world, who, now, after)
+                predict(world, who, now, after)
                 schedule_next(world, who, now)
                 if rules.prefetching:
-                    look_ahead(world, who)
+                    prefetch_ahead(world, who)
 
 
 @step
-def happen(world: World, k: int, now: float) -> FollowUp:
-    """Carry out sphere k's event."""
+def process_event(world: World, k: int, now: float) -> FollowUp:
+    """Carry out the event that sphere k holds."""
     schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
     task = Task.PREDICT
@@ -85,7 +85,7 @@ def happen(world: World, k: int, now: float) -> FollowUp:
         p = int(own.partner)
         if schedule[p].hits == own.partner_hits:
             if world.rules.response == ResponseCode.NONE:
-                begin_to_touch(world, k, p, now)
+                note_onset(world, k, p, now)
             elif hit_pair(world, k, p, now):
                 other = p
         else:
@@ -97,7 +97,7 @@ def happen(world: World, k: int, now: float) -> FollowUp:
         layer = cross(world.cells, schedule, k)
         counts.cell_crossings += 1
     elif world.rules.neighbours == NeighbourSearch.LISTS:
-        catch_up(world, k, now)
+        advance(world, k, now)
         counts.list_renewals += 1
         if not renew(world, k):
             task = Task.GIVE_UP
@@ -105,10 +105,10 @@ def happen(world: World, k: int, now: float) -> FollowUp:
 
 
 @step
-def look(world: World, k: int, now: float, after: FollowUp) -> None:
+def predict(world: World, k: int, now: float, after: FollowUp) -> None:
     """Find sphere k's next pair event.
 
-    After a crossing its pair candidate stands, and only the new layer of cells is looked at.
+    After a crossing its pair candidate stands, and only the new layer of cells is searched.
     """
     schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
@@ -117,7 +117,7 @@ def look(world: World, k: int, now: float, after: FollowUp) -> None:
         count = int(world.lists.members[k].count)
         candidates = world.lists.members[k].who[:]
     else:
-        count = gather(world, k, now, after.layer)
+        count = gather_candidates(world, k, now, after.layer)
         counts.pair_tests -= after.task == Task.PREDICT  # itself among them: zero gap, no hit
     counts.pair_tests += count
     if world.rules.response == ResponseCode.NONE:
@@ -178,4 +178,4 @@ def schedule_next(world: World, k: int, now: float) -> None:
         kind = Event.PAIR if due < inf else Event.NOTHING
     own.kind = kind
     own.face = met
-    post(world, k, max(due, now))
+    enqueue(world, k, max(due, now))

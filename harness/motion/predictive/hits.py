@@ -1,24 +1,27 @@
-"""A pair touches, or a sphere meets a wall: velocities change, tallies are kept, the event is written down."""
+"""What a hit does: velocities change, totals grow, and the event is recorded."""
 
 from __future__ import annotations
 
 from harness.kernel import step
 from harness.motion.predictive.burst import note_hit
-from harness.motion.predictive.clock import absolute, catch_up
+from harness.motion.predictive.clock import absolute, advance
 from harness.motion.predictive.codes import ResponseCode
 from harness.motion.predictive.numerics import approaches
-from harness.motion.predictive.response import bounce, flip
+from harness.motion.predictive.response import answer_elastic, answer_reflect
 from harness.motion.predictive.state import PAIR_EVENT, WALL_EVENT, World
 from harness.motion.predictive.sums import add
 
 
 @step
 def hit_pair(world: World, k: int, p: int, now: float) -> bool:
-    """Answer a pair if it still approaches. The labels order the two, so that it does not matter who held the event."""
+    """Answer a pair if it still approaches. Returns whether it did.
+
+    The labels order the two, so that it does not matter who held the event.
+    """
     spheres, rules, totals = world.spheres, world.rules, world.totals
     motions, schedule, counts = spheres.motions, spheres.schedule, totals.counts[0]
-    catch_up(world, k, now)
-    catch_up(world, p, now)
+    advance(world, k, now)
+    advance(world, p, now)
     if not approaches(
         motions[p].position[0] - motions[k].position[0],
         motions[p].position[1] - motions[k].position[1],
@@ -34,19 +37,19 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     if rules.response == ResponseCode.ELASTIC:
         restitution = rules.restitution
         if restitution < 1.0:
-            # TC model: a contact so soon after another belongs to the same lasting contact, and loses nothing more
+            # TC model: a contact so soon after another belongs to the same lasting contact, and no more energy is lost
             if now - max(spheres.last_contacts[i], spheres.last_contacts[j]) < rules.contact_time:
                 restitution = 1.0
                 counts.guarded_hits += 1
             spheres.last_contacts[i] = now
             spheres.last_contacts[j] = now
-        left = bounce(motions[i], motions[j], schedule[i].mass, schedule[j].mass, restitution)
-        virial = left.virial
-        if left.lost > 0.0:
-            add(totals.sums[0].lost_energy, left.lost)
-            add(totals.sums[0].lost_energy_time, left.lost * absolute(totals.clock[0], now))
+        hit = answer_elastic(motions[i], motions[j], schedule[i].mass, schedule[j].mass, restitution)
+        virial = hit.virial
+        if hit.lost > 0.0:
+            add(totals.sums[0].lost_energy, hit.lost)
+            add(totals.sums[0].lost_energy_time, hit.lost * absolute(totals.clock[0], now))
     else:
-        virial = flip(motions[i], motions[j], schedule[i].mass, schedule[j].mass)
+        virial = answer_reflect(motions[i], motions[j], schedule[i].mass, schedule[j].mass)
     add(totals.sums[0].pair_virial, virial)
     note_hit(world, i, now, rules.burst_window)
     note_hit(world, j, now, rules.burst_window)
@@ -56,8 +59,8 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
 
 
 @step
-def begin_to_touch(world: World, k: int, p: int, now: float) -> None:
-    """Nothing answers: note the onset, once, although both spheres may hold it."""
+def note_onset(world: World, k: int, p: int, now: float) -> None:
+    """Record that two spheres begin to touch where nothing answers: once, although both may hold the event."""
     last = world.totals.onset[0]
     i = min(world.spheres.schedule[k].label, world.spheres.schedule[p].label)
     j = max(world.spheres.schedule[k].label, world.spheres.schedule[p].label)
@@ -71,26 +74,26 @@ def begin_to_touch(world: World, k: int, p: int, now: float) -> None:
 
 @step
 def hit_wall(world: World, k: int, face: int, now: float) -> None:
-    """A sphere meets a face (x-, x+, y-, y+, z-, z+)."""
-    reach_plane(world, k, face, world.rules.half_box[face // 2] - world.spheres.motions[k].radius, now)
-    turn_back(world, k, face, now)
+    """Reflect sphere k from the wall that it has reached: x-, x+, y-, y+, z-, z+."""
+    advance_to_plane(world, k, face, world.rules.half_box[face // 2] - world.spheres.motions[k].radius, now)
+    reflect_from_wall(world, k, face, now)
 
 
 @step
-def reach_plane(world: World, k: int, face: int, plane: float, now: float) -> None:
-    """Sphere k flies to the plane where it meets a face, at this distance from the middle of the box."""
+def advance_to_plane(world: World, k: int, face: int, plane: float, now: float) -> None:
+    """Move sphere k to the present, when its centre reaches a plane at this distance from the middle of the box."""
     position = world.spheres.motions[k].position
     axis = face // 2
     inside = abs(position[axis]) <= plane
-    catch_up(world, k, now)
+    advance(world, k, now)
     if inside:
-        # Exactly on the plane: what time rounds away at any speed cannot add up to an escape
+        # Exactly on the plane, so that what is rounded off the time cannot add up to an escape at any speed
         position[axis] = plane if face % 2 == 1 else -plane
 
 
 @step
-def turn_back(world: World, k: int, face: int, now: float) -> None:
-    """Mirror the velocity of sphere k, whose position is that of the present, at a face."""
+def reflect_from_wall(world: World, k: int, face: int, now: float) -> None:
+    """Mirror the velocity of sphere k, whose position is that of the present, in a wall."""
     motion, totals = world.spheres.motions[k], world.totals
     axis = face // 2
     impulse = 2.0 * world.spheres.schedule[k].mass * abs(motion.velocity[axis])
@@ -104,7 +107,7 @@ def turn_back(world: World, k: int, face: int, now: float) -> None:
 
 @step
 def record(world: World, now: float, kind: int, i: int, j: int, wall: int) -> None:
-    """Write an event down, if somebody reads it."""
+    """Write an event into the log, if there is one."""
     counts = world.totals.counts[0]
     if world.log.size > 0:
         event = world.log[counts.recorded]

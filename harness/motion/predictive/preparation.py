@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.motion.predictive.cells import build, size_classes
 from harness.motion.predictive.codes import Event, NeighbourSearch
+from harness.motion.predictive.grids import empty_grids, size_classes
 from harness.motion.predictive.initial import InitialState
 from harness.motion.predictive.order import along_curve
 from harness.motion.predictive.state import (
@@ -61,7 +61,7 @@ def prepare(start: InitialState, rules: Rules, record: bool) -> World:
     return World(
         spheres=Spheres(motions, schedule, last_contacts=np.full(n, -np.inf)),
         queue=unscheduled(n),
-        cells=build(start.half_box, start.radii, rules.skin),
+        cells=empty_grids(start.half_box, start.radii, rules.skin),
         lists=empty_lists(motions, rules.neighbours),
         rules=rules,
         totals=no_totals(),

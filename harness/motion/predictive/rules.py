@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.motion.predictive.cells import size_classes
 from harness.motion.predictive.codes import NeighbourSearch, ResponseCode
+from harness.motion.predictive.grids import size_classes
 from harness.motion.predictive.initial import InitialState
 from harness.motion.predictive.order import REORDERED_FROM
 from harness.motion.predictive.state import Rules

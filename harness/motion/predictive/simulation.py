@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from harness.errors import InputError
-from harness.motion.predictive import cells
 from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
 from harness.motion.predictive.flight import fly, populate
+from harness.motion.predictive.grids import empty_grids, size_classes
 from harness.motion.predictive.initial import check
 from harness.motion.predictive.order import labelled, positions_at, reorder
 from harness.motion.predictive.preparation import empty_lists, prepare
@@ -71,7 +71,7 @@ class Simulation:
         if not 0.0 <= restitution <= 1.0:
             raise InputError(f"restitution must lie between 0 and 1, not {restitution:g}")
         search = search or choose_search(start, response)
-        if search not in SEARCHES or (search == "lists" and cells.size_classes(start.radii).max(initial=0) > 0):
+        if search not in SEARCHES or (search == "lists" and size_classes(start.radii).max(initial=0) > 0):
             raise InputError(f'search "{search}" is not possible for these spheres')
         self._chunks: list[NDArray[np.void]] = []
         self._world = prepare(start, make_rules(start, response, float(restitution), search), record)
@@ -229,7 +229,7 @@ class Simulation:
         world.spheres.schedule["kind"] = Event.UNSCHEDULED
         world.queue.times[leaves : leaves + len(self)] = now
         self._world = world._replace(
-            cells=cells.build(self._start.half_box, self._start.radii, 0.0),
+            cells=empty_grids(self._start.half_box, self._start.radii, 0.0),
             lists=empty_lists(motions, NeighbourSearch.CELLS),
             rules=world.rules._replace(neighbours=NeighbourSearch.CELLS, skin=0.0),
         )

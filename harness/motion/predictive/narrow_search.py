@@ -5,7 +5,7 @@ from __future__ import annotations
 from harness.kernel import kernel
 from harness.motion.predictive.codes import Phase
 from harness.motion.predictive.solids import SolidWorld, motion_of
-from harness.motion.predictive.windows import remove
+from harness.motion.predictive.windows import close
 from harness.narrowphase.advancement import IMPACT, NEVER, STALLED, time_of_impact, time_of_wall_impact
 from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, Start, time_of_mesh_impact
 from harness.narrowphase.parting import time_of_mesh_parting, time_of_parting
@@ -16,7 +16,7 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     """Find the hit of body k in its window w, which is due; close the window if there is none."""
     world, body = solid.world, solid.body
     motions, schedule, counts = world.spheres.motions, world.spheres.schedule, world.totals.counts[0]
-    window, warm = solid.windows.pool[w], solid.windows.starts[w]
+    window, warm = solid.windows.pool[w], solid.windows.warm_starts[w]
     p = int(window.other)
     # The labels order the two, so that it does not matter who holds the window
     swap = schedule[p].label < schedule[k].label
@@ -47,7 +47,7 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     counts.narrow_tests += 1
     counts.advancement_steps += steps
     if verdict == NEVER:
-        remove(solid.windows, k, w)
+        close(solid.windows, k, w)
         return
     window.time = now + time
     # What has just parted cannot touch but by rounding
