@@ -62,6 +62,7 @@ class Simulation:
         half_box: ArrayLike,
         response: str = "reflect",
         restitution: float = 1.0,
+        *,
         record: bool = False,
         search: str | None = None,
     ) -> None:

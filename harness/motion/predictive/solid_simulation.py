@@ -40,6 +40,7 @@ class SolidSimulation(Simulation):
         form: Form,
         response: str = "reflect",
         restitution: float = 1.0,
+        *,
         record: bool = False,
         tolerance: float = 1e-6,
     ) -> None:
@@ -53,7 +54,7 @@ class SolidSimulation(Simulation):
             box.half,
             response,
             restitution,
-            record,
+            record=record,
             search="cells",
         )
         # The narrow search takes the time, not the memory: there is no need to keep neighbours together
