@@ -8,7 +8,7 @@ from harness.motion.predictive.codes import Stop
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_flight import fly_solids
 from harness.motion.predictive.solids import Form, SolidWorld, solids
-from harness.motion.predictive.windows import enlarged, windows
+from harness.motion.predictive.windows import empty_windows, enlarged
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
@@ -64,7 +64,7 @@ class SolidSimulation(Simulation):
         order = self._world.spheres.schedule["label"]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64
-        self._solid = SolidWorld(self._world, body, windows(len(bodies), room))
+        self._solid = SolidWorld(self._world, body, empty_windows(len(bodies), room))
 
     def _fly(self, until: float, budget: int) -> Stop:
         return fly_solids(self._solid, until, budget)

@@ -1,4 +1,4 @@
-"""What the scheduler knows, as arrays of records: one motion and one scheduled event a sphere, the cells, the tallies.
+"""The state of a run, as arrays of records: a motion and a scheduled event a sphere, the queue, the cells, the totals.
 
 The named tuples are handed to the compiled loop whole; everything in them changes in place.
 """
@@ -33,7 +33,7 @@ MOTION = np.dtype(
     align=True,
 )
 
-# What the scheduler knows of a sphere: 64 bytes more.
+# What else the event loop knows of a sphere: 64 bytes more.
 SCHEDULE = np.dtype(
     [
         ("pair_time", np.float64),  # s, of the earliest pair candidate; it outlives crossings
@@ -41,7 +41,7 @@ SCHEDULE = np.dtype(
         ("mass", np.float64),  # kg
         ("hits", np.int32),  # how often the velocity changed: an event made for another count is stale
         ("partner", np.int32),  # the pair candidate, -1: none
-        ("partner_hits", np.int32),  # its hits when it was looked at
+        ("partner_hits", np.int32),  # its hits when the pair was predicted
         ("kind", np.int16),  # of the scheduled event, an `Event`
         ("face", np.int16),  # that it is about, of the box or of the cell: x-, x+, y-, y+, z-, z+
         ("label", np.int32),  # the caller's numbering, which breaks ties
@@ -60,7 +60,7 @@ GRID = np.dtype(
         ("low", np.float64, 3),  # m, where it begins
         ("side", np.float64, 3),  # m, of a cell
         ("largest", np.float64),  # m, radius
-        ("margin", np.float64),  # m, how far a sphere flies before it looks at finer grids again
+        ("margin", np.float64),  # m, how far a sphere flies before it searches finer grids again
     ],
     align=True,
 )
@@ -107,15 +107,15 @@ SUMS = np.dtype(
 # Absolute time is (epoch + epoch_rest) + now.
 CLOCK = np.dtype([("epoch", np.float64), ("epoch_rest", np.float64), ("now", np.float64)], align=True)
 
-# The onset that was noted last (response none).
+# The onset of touching that was recorded last (response none).
 ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align=True)
 
 # A recorded event: j is -1 at a wall, wall is -1 between a pair.
 EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
 PAIR_EVENT, WALL_EVENT = 0, 1
 
-# Candidates solved at a time, as columns. Their number is a constant, so that the compiler sees that the columns do not
-# overlap.
+# Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that the columns
+# do not overlap.
 LANES = 64
 CANDIDATES = np.dtype(
     [
@@ -125,7 +125,7 @@ CANDIDATES = np.dtype(
     align=True,
 )
 
-# Who is near a sphere: a list of one cache line or, if it is long, two.
+# The neighbours of a sphere: most lists fill one cache line, and none more than two.
 CAPACITY = 31
 NEIGHBOURS = np.dtype([("count", np.uint32), ("who", np.uint32, CAPACITY)], align=True)
 
@@ -157,24 +157,24 @@ class Cells(NamedTuple):
     heads: Indices  # (cells of all grids,) first sphere, n = empty
     following: Indices  # (n + 1,) the next sphere in the same cell
     grids: Records  # (grids,) of GRID
-    renewals: Floats  # (n,) when a sphere has flown its margin and must look at finer grids again
+    renewals: Floats  # (n,) s, when a sphere has flown its margin and must search finer grids again
 
 
 class Lists(NamedTuple):
     """Neighbours within touching distance + skin, of spheres that moved at most skin / 2 from their anchors."""
 
-    anchors: Floats  # (n, 3)
+    anchors: Floats  # (n, 3) m
     members: Records  # (n,) of NEIGHBOURS
 
 
 class Rules(NamedTuple):
     """What stays the same during a run."""
 
-    half_box: Floats  # (3,)
+    half_box: Floats  # (3,) m
     neighbours: NeighbourSearch
     response: ResponseCode
     restitution: float
-    skin: float
+    skin: float  # m: how much farther than touching neighbours of a list may be
     contact_time: float  # s: a pair hit this soon after another is answered elastically
     burst_window: float  # s: a pair hit of a sphere this soon after another belongs to one collision burst
     cooldown: float  # s: what a sphere waits before a hit beyond the limit

@@ -66,7 +66,7 @@ class Windows(NamedTuple):
     walls: Records
 
 
-def windows(bodies: int, room: int) -> Windows:
+def empty_windows(bodies: int, room: int) -> Windows:
     """No windows yet, room for so many."""
     pool = np.zeros(room, dtype=WINDOW)
     pool["next"] = np.append(np.arange(1, room), NOBODY)
@@ -89,7 +89,7 @@ def windows(bodies: int, room: int) -> Windows:
 def enlarged(full: Windows) -> Windows:
     """The same windows and as many free ones again."""
     room = len(full.pool)
-    larger = windows(len(full.heads), 2 * room)
+    larger = empty_windows(len(full.heads), 2 * room)
     larger.pool[:room] = full.pool
     larger.warm_starts[:room] = full.warm_starts
     larger.pool["next"][-1] = full.free["first"][0]
