@@ -1,8 +1,23 @@
-"""Make, inspect and simplify mesh files.
+"""Make, inspect, simplify and weld mesh files.
 
 harness mesh make pumpkin --faces 1753
 harness mesh inspect meshes/*.ply
 harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
+harness mesh weld scan.stl --within 1e-6 --out scan-welded.ply
+
+what is read of a file, told by the end of its name:
+  .obj  v and f: any white space, # anywhere, lines continued by \\, indices from 1
+        or backwards from where they stand, with or without texture and normal
+  .ply  text, or binary in either order of bytes: vertex x y z and face
+        vertex_indices of any types; other elements and properties passed over
+  .stl  binary, with any header and any bytes behind the faces; text, keywords in
+        any case, any names, several solids
+  .off  OFF, COFF, NOFF, STOFF as text, comments; colours and normals passed over
+  .glb  glTF 2.0: triangles and strips of the scene, placed by its nodes
+Polygons of any number of corners are cut into triangles by ear clipping in their
+own plane; faces without area are left out and counted. Text may be in any encoding
+that holds ASCII. Not read: triangle strips of PLY, binary OFF, compressed, sparse
+or normalised glTF, free-form surfaces, UTF-16.
 """
 
 from __future__ import annotations
@@ -39,7 +54,7 @@ FACTS = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command takes."""
-    actions = parser.add_subparsers(dest="action", required=True, metavar="make|inspect|simplify")
+    actions = parser.add_subparsers(dest="action", required=True, metavar="make|inspect|simplify|weld")
     make = actions.add_parser("make", help="write a solid with a given number of faces")
     make.add_argument("solid", choices=SOLIDS)
     make.add_argument("--faces", type=int, metavar="N", help="how many; an odd number gives an open mesh")
@@ -56,10 +71,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     simplify.add_argument("--out", type=Path, required=True, metavar="FILE", help="a .ply file")
     simplify.add_argument("--force", action="store_true", help="overwrite the file if it is there")
     simplify.set_defaults(act=_simplify)
+    weld = actions.add_parser("weld", help="write a mesh whose vertices within rounding of another are one with it")
+    weld.add_argument("file", type=Path, metavar="FILE")
+    weld.add_argument("--within", type=float, required=True, metavar="X", help="distance, in the unit of the file")
+    weld.add_argument("--out", type=Path, metavar="FILE", help="a .ply file (default meshes/NAME-welded.ply)")
+    weld.add_argument("--force", action="store_true", help="overwrite the file if it is there")
+    weld.set_defaults(act=_weld)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the action says; wrong input is raised."""
+    """Make, inspect or simplify; wrong input is raised."""
     arguments.act(arguments)
     return 0
 
@@ -75,11 +96,21 @@ def _make(arguments: argparse.Namespace) -> None:
 def _simplify(arguments: argparse.Namespace) -> None:
     from harness.scene.simplify import simplify
 
-    mesh = _opened([arguments.file])[arguments.file]
-    if isinstance(mesh, str):
-        raise InputError(mesh)
+    mesh = _opened_one(arguments.file)
     vertices, faces = simplify(mesh.vertices, mesh.faces, arguments.faces)
     _write(arguments.out, vertices * mesh.diameter, faces, arguments.force)
+
+
+def _weld(arguments: argparse.Namespace) -> None:
+    from harness.scene.weld import weld
+
+    mesh = _opened_one(arguments.file)
+    vertices, faces, welded = weld(mesh.vertices * mesh.diameter, mesh.faces, arguments.within)
+    out = arguments.out or Path("meshes") / f"{arguments.file.stem}-welded.ply"
+    notes = [f"{welded} {'vertex' if welded == 1 else 'vertices'} welded to another within {arguments.within:g}"]
+    if lost := len(mesh.faces) - len(faces):
+        notes.append(f"{lost} {'face' if lost == 1 else 'faces'} with two corners so welded left out")
+    _write(out, vertices, faces, arguments.force, *notes)
 
 
 def _inspect(arguments: argparse.Namespace) -> None:
@@ -101,14 +132,22 @@ def _opened(paths: list[Path]) -> dict[Path, Mesh | str]:
     return open_meshes(paths)
 
 
-def _write(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32], force: bool) -> None:
-    """Write a mesh and say what it became."""
+def _opened_one(path: Path) -> Mesh:
+    """The mesh of one file; what is wrong with it is raised."""
+    mesh = _opened([path])[path]
+    if isinstance(mesh, str):
+        raise InputError(mesh)
+    return mesh
+
+
+def _write(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32], force: bool, *notes: str) -> None:
+    """Write a mesh and say what it became, and more notes."""
     from harness.scene.mesh_file import make_mesh
     from harness.scene.ply_file import write_ply
 
     if path.suffix.lower() != ".ply":
         raise InputError(f"{path}: meshes are written as .ply")
-    mesh = make_mesh(path.name, vertices, faces)
+    mesh = make_mesh(path.name, vertices, faces, notes)
     try:
         write_ply(path, vertices, faces, force)
     except FileExistsError as error:
@@ -123,7 +162,7 @@ def _write(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32], 
 
 
 def _facts(mesh: Mesh) -> dict[str, Any]:
-    """What there is to say of a mesh, in the unit of its file."""
+    """The facts of a mesh, in the unit of its file."""
     from harness.scene.topology import area, topology, volume
 
     about = topology(mesh.faces, len(mesh.vertices))

@@ -1,32 +1,33 @@
-"""Reads a mesh file, refuses what is no three-dimensional triangle surface, and normalises the rest.
+"""Reads a mesh file, refuses what is no three-dimensional surface, and normalises the rest.
 
-trimesh parses; nothing it can say is shown raw. The file is handed over as bytes, so that it cannot name other files.
+The file is taken as bytes, so that it cannot name other files, and read by its format's reader in `formats`.
 A mesh from a stranger is better read through `mesh_child`, which limits memory and time.
 """
 
 from __future__ import annotations
 
-import io
-import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from harness.errors import InputError
 from harness.scene.bounding_sphere import bounding_sphere
+from harness.scene.formats import FORMATS
+from harness.scene.formats.contents import recognised
 from harness.scene.hull import convex_hull
 from harness.scene.mesh import Mesh, digest
-from harness.scene.topology import Topology, area, is_convex, topology
+from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, of_triangles, scaled
+from harness.scene.topology import Topology, is_convex, proper, topology
+from harness.scene.triangulation import Triangles, triangulated
 
-FORMATS = ("glb", "obj", "off", "ply", "stl")
 MAX_BYTES = 512 * 1024**2
-MAX_FACES = 2_000_000
-MAX_VERTICES = 3 * MAX_FACES  # as many as STL writes
 # Below this, of its largest extent, a mesh is flat; above it every computation here keeps some digits.
 FLAT = 1e-9
 EXTENTS = (1e-100, 1e100)
+# A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of a coordinate.
+THIN = 2.0**-50
 
 
 def read_mesh(path: Path | str) -> Mesh:
@@ -39,23 +40,25 @@ def read_mesh(path: Path | str) -> Mesh:
     Returns
     -------
     Mesh
-        With the file's faces, all of them and in their order; equal vertices are made one and unused ones left out.
+        With the file's faces in their order, polygons cut into triangles; equal vertices are made one, and unused ones
+        and faces without area are left out.
 
     Raises
     ------
     InputError
         If it cannot be read, is too large, or is no surface with an extent in three dimensions; the file's name first.
     MemoryError
-        If memory ran out while parsing it.
+        If memory ran out while reading it.
     """
     path = Path(path)
     try:
-        return make_mesh(path.name, *_parse(path))
+        return _made(path.name, _parsed(path))
     except InputError as error:
-        raise InputError(f"{path.name}: {error}") from error
+        said = "".join(letter if letter.isprintable() else "\ufffd" for letter in f"{path.name}: {error}")
+        raise InputError(said) from error
 
 
-def make_mesh(name: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Mesh:
+def make_mesh(name: str, vertices: NDArray[np.float64], faces: NDArray[np.int32], notes: tuple[str, ...] = ()) -> Mesh:
     """The mesh of arrays, validated and normalised.
 
     Parameters
@@ -63,40 +66,21 @@ def make_mesh(name: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]
     name : what to call it
     vertices : (v, 3) float array, any unit
     faces : (f, 3) int array
+    notes : what a person should know of how they were made
 
     Raises
     ------
     InputError
         If they are no surface with an extent in three dimensions.
     """
-    vertices, faces = _checked(np.asarray(vertices), np.asarray(faces))
-    vertices, faces = _welded(vertices, faces)
-    vertices, extent = _unit_box(vertices)
-    hull = convex_hull(vertices)
-    centre, radius = bounding_sphere(hull.vertices)
-    vertices = np.ascontiguousarray((vertices - centre) / (2 * radius))
-    hull = convex_hull(vertices)
-    areas = area(vertices, faces)
-    if not areas.sum() > 0:
-        raise InputError("all faces of the mesh are degenerate: it has no area")
-    about = topology(faces, len(vertices))
-    vertices.setflags(write=False)
-    faces.setflags(write=False)
-    return Mesh(
-        name=name,
-        vertices=vertices,
-        faces=faces,
-        hull=hull,
-        digest=digest(vertices, faces),
-        watertight=about.watertight,
-        convex=is_convex(vertices, faces, hull),
-        notes=_notes(about, int((areas == 0).sum())),
-        diameter=2 * radius * extent,
-    )
+    vertices, faces = np.asarray(vertices), np.asarray(faces)
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
+        raise InputError("the mesh is not made of triangles in three dimensions")
+    return _made(name, of_triangles(vertices, faces), notes)
 
 
-def _parse(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Vertices and faces as the file has them."""
+def _parsed(path: Path) -> PolygonMesh:
+    """What a file holds."""
     form = path.suffix.lower().lstrip(".")
     if form not in FORMATS:
         known = ", ".join(f".{name}" for name in FORMATS)
@@ -110,68 +94,103 @@ def _parse(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         content = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}") from error
-    declared = _declared(form, content)
-    if declared > MAX_VERTICES:
-        raise InputError(f"its header announces {declared} vertices or faces; at most {MAX_FACES} faces are read")
-    if form in ("obj", "off"):  # text in any encoding; only the comments are not ASCII
-        content = content.decode("utf-8", "replace").encode()
+    if not content:
+        raise InputError("the file is empty")
     try:
-        mesh = trimesh.load_mesh(io.BytesIO(content), file_type=form, process=False, maintain_order=True)
-    except MemoryError:
-        raise
-    except Exception as error:  # whatever a parser trips over, the file is at fault
-        if isinstance(error.__context__, MemoryError):
-            raise MemoryError from error
-        reason = "" if isinstance(error, ImportError) else " ".join(str(error).split())[:200]
-        raise InputError(f"not a readable {form} file" + (f" ({reason})" if reason else "")) from error
-    if not hasattr(mesh, "faces"):
+        return FORMATS[form](content)
+    except InputError as error:
+        what = recognised(content, form)
+        raise (InputError(what) if what else error) from None
+
+
+def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh:
+    """The mesh of polygons, validated, cut into triangles and normalised."""
+    polygons = _welded(_checked(polygons))
+    cut = triangulated(polygons)
+    thin = _thin(polygons.vertices, cut.faces)
+    faces, used = _compact(cut.faces[~thin])
+    vertices = polygons.vertices[used]
+    vertices, extent = _unit_box(vertices)
+    hull = convex_hull(vertices)
+    centre, radius = bounding_sphere(hull.vertices)
+    vertices = np.ascontiguousarray((vertices - centre) / (2 * radius))
+    hull = convex_hull(vertices)
+    closed, about = faces, topology(faces, len(vertices))
+    if thin.any() and not about.watertight:
+        # A face without area often stands where an edge meets two others: that is no gap, though no edge is shared.
+        with_thin, all_used = _compact(proper(cut.faces))
+        whole = topology(with_thin, len(all_used))
+        if whole.watertight:
+            about, closed = whole, (with_thin if len(all_used) == len(used) else faces)
+    vertices.setflags(write=False)
+    faces.setflags(write=False)
+    return Mesh(
+        name=name,
+        vertices=vertices,
+        faces=faces,
+        hull=hull,
+        digest=digest(vertices, faces),
+        watertight=about.watertight,
+        convex=is_convex(vertices, closed, hull),
+        notes=(*_notes(about, cut, int(thin.sum())), *polygons.notes, *notes),
+        diameter=2 * radius * extent,
+    )
+
+
+def _checked(mesh: PolygonMesh) -> PolygonMesh:
+    """The polygons, if their numbers make sense."""
+    vertices, corners, lengths = mesh.vertices, mesh.corners, mesh.lengths
+    if len(lengths) == 0 or len(vertices) == 0:
         raise InputError("the mesh is empty: it has no faces")
-    return mesh.vertices, mesh.faces
+    triangles = int(np.maximum(lengths - 2, 0).sum())
+    if triangles > MAX_FACES or len(vertices) > MAX_VERTICES:
+        raise InputError(f"the mesh has {triangles} faces and {len(vertices)} vertices; at most {MAX_FACES} are read")
+    strangers = np.flatnonzero((corners < 0) | (corners >= len(vertices)))
+    if len(strangers):
+        owners = np.unique(np.searchsorted(np.cumsum(lengths), strangers, side="right"))
+        where = f"line {mesh.face_line(int(owners[0]))}: " if mesh.face_line else ""
+        raise InputError(
+            f"{where}{len(owners)} of the mesh's faces name a vertex that does not exist, the first of them "
+            f"{corners[strangers[0]] + mesh.base}; there are {len(vertices)}, counted from {mesh.base}"
+        )
+    used = np.unique(corners)
+    infinite = used[~np.isfinite(vertices[used]).all(axis=1)]
+    if len(infinite):
+        where = f"line {mesh.vertex_line(int(infinite[0]))}: " if mesh.vertex_line else ""
+        raise InputError(f"{where}{len(infinite)} of the mesh's vertices are not finite numbers")
+    return replace(mesh, vertices=np.asarray(vertices, np.float64))
 
 
-def _declared(form: str, content: bytes) -> int:
-    """The most elements of a kind that a file's header announces, before anything is allocated for them; 0 if none."""
-    if form == "ply":
-        counts = re.findall(rb"element\s+\w+\s+(\d+)", content[:65536])
-    elif form == "off":
-        counts = re.findall(rb"\d+", re.sub(rb"#[^\n]*", b"", content[:65536]))[:2]
-    elif form == "stl" and not content.lstrip().startswith(b"solid"):
-        return int.from_bytes(content[80:84], "little")
-    else:
-        counts = []
-    return max((int(digits[:18]) for digits in counts), default=0)
-
-
-def _checked(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """The arrays, if their numbers make sense."""
-    if len(faces) == 0 or len(vertices) == 0:
-        raise InputError("the mesh is empty: it has no faces")
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
-        raise InputError("the mesh is not made of triangles in three dimensions")
-    if len(faces) > MAX_FACES or len(vertices) > MAX_VERTICES:
-        raise InputError(f"the mesh has {len(faces)} faces and {len(vertices)} vertices; at most {MAX_FACES} are read")
-    wrong = int(((faces < 0) | (faces >= len(vertices))).any(axis=1).sum())
-    if wrong:
-        raise InputError(f"{wrong} of the mesh's faces name a vertex that does not exist")
-    vertices = np.asarray(vertices, np.float64)
-    wrong = int((~np.isfinite(vertices[np.unique(faces)])).any(axis=1).sum())
-    if wrong:
-        raise InputError(f"{wrong} of the mesh's vertices are not finite numbers")
-    return vertices, faces.astype(np.int32)
-
-
-def _welded(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def _welded(mesh: PolygonMesh) -> PolygonMesh:
     """Used vertices only, exactly equal ones made one, in the order of their first use in the file.
 
     Some formats (STL) write the vertices of each face anew; only welded do neighbouring faces share an edge.
     """
-    used, renumbered = np.unique(faces, return_inverse=True)
-    vertices = vertices[used] + 0.0  # -0.0 and 0.0 are equal, and so must be their bytes
+    used, renumbered = np.unique(mesh.corners, return_inverse=True)
+    vertices = mesh.vertices[used] + 0.0  # -0.0 and 0.0 are equal, and so must be their bytes
     _, first, same = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
-    place = np.empty(len(order), np.int32)
-    place[order] = np.arange(len(order), dtype=np.int32)
-    return vertices[first[order]], place[same.reshape(-1)][renumbered].reshape(-1, 3)
+    place = np.empty(len(order), np.int64)
+    place[order] = np.arange(len(order))
+    return replace(mesh, vertices=vertices[first[order]], corners=place[same.reshape(-1)][renumbered])
+
+
+def _thin(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which faces have no area, up to the rounding of their coordinates; refused if all are such."""
+    points = scaled(vertices)
+    a, b, c = (points[faces[:, corner]] for corner in range(3))
+    twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    longest = np.linalg.norm([b - a, c - b, a - c], axis=2).max(axis=0)
+    thin = twice_area <= THIN * np.abs(points).max() * longest
+    if thin.all():
+        raise InputError("all faces of the mesh are degenerate: it has no area")
+    return np.asarray(thin)
+
+
+def _compact(faces: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """The faces with their vertices numbered anew, in the same order and without gaps, and the numbers they had."""
+    used, renumbered = np.unique(faces, return_inverse=True)
+    return renumbered.reshape(-1, 3).astype(np.int32), used
 
 
 def _unit_box(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
@@ -188,13 +207,19 @@ def _unit_box(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], float
     return vertices, extent
 
 
-def _notes(about: Topology, degenerate: int) -> tuple[str, ...]:
+def _notes(about: Topology, cut: Triangles, thin: int) -> tuple[str, ...]:
     """What a person should know of a mesh that is allowed all the same."""
     counts = (
         (about.boundary, "open: {} boundary {}", ("edge", "edges")),
-        (about.crowded, "non-manifold: {} {} of more than two faces", ("edge", "edges")),
+        (about.nonmanifold, "non-manifold: {} {} of more than two faces", ("edge", "edges")),
         (about.turned, "inconsistent: faces on the two sides of {} {} are turned contrary ways", ("edge", "edges")),
         (about.pieces if about.pieces > 1 else 0, "in {} {}", ("piece", "pieces that share no vertex")),
-        (degenerate, "{} degenerate {} without area", ("face", "faces")),
+        (cut.degenerate + thin, "{} degenerate {} without area left out", ("face", "faces")),
+        (
+            cut.bent,
+            f"{{}} {{}} not plane, by up to {cut.height:.1g} of the mesh's extent",
+            ("polygon is", "polygons are"),
+        ),
+        (cut.crossing, "{} {}", ("polygon crosses itself", "polygons cross themselves")),
     )
     return tuple(text.format(count, names[count > 1]) for count, text, names in counts if count)

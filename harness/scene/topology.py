@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from harness.scene.hull import Hull
 
+Index = TypeVar("Index", bound=np.integer[Any])
 # How far inside its hull a vertex of a convex mesh may lie, of the mesh's diameter.
 ON_HULL = 1e-9
 
@@ -23,37 +25,40 @@ class Topology:
     ----------
     edges : of all faces, each counted once
     boundary : edges of one face
-    crowded : edges of three and more faces
+    nonmanifold : edges of three and more faces, where the surface is no manifold
     turned : edges of two faces that run around it in contrary senses, so that one is inside out
     pieces : parts that share no vertex
     """
 
     edges: int
     boundary: int
-    crowded: int
+    nonmanifold: int
     turned: int
     pieces: int
 
     @property
     def watertight(self) -> bool:
         """Whether every edge belongs to exactly two faces."""
-        return self.boundary == 0 and self.crowded == 0
+        return self.boundary == 0 and self.nonmanifold == 0
 
 
 def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
     """Counts over the edges of faces, (f, 3) int array, each of whose vertices is used.
 
     Faces that name a vertex twice have no edges and are passed over.
+
+    >>> tetrahedron = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], np.int32)
+    >>> topology(tetrahedron, 4).watertight, topology(tetrahedron[1:], 4).boundary
+    (True, 3)
     """
-    proper = faces[_proper(faces)]
-    edges, first, uses = _edges(proper)
+    edges, first, uses = _edges(proper(faces))
     forward = np.bincount(edges, weights=first, minlength=len(uses))
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(vertices, vertices))
     return Topology(
         edges=len(uses),
         boundary=int((uses == 1).sum()),
-        crowded=int((uses > 2).sum()),
+        nonmanifold=int((uses > 2).sum()),
         turned=int(((uses == 2) & (forward != 1)).sum()),
         pieces=int(connected_components(graph, directed=False, return_labels=False)),
     )
@@ -71,7 +76,7 @@ def is_convex(vertices: NDArray[np.float64], faces: NDArray[np.int32], hull: Hul
     faces : (f, 3) int array
     hull : Hull of the vertices
     """
-    faces = faces[_proper(faces)]
+    faces = proper(faces)
     about = topology(faces, len(vertices))
     if not about.watertight or about.pieces != 1 or len(vertices) - about.edges + len(faces) != 2:
         return False
@@ -111,9 +116,10 @@ def volume(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
     return float(np.einsum("ij,ij->", np.cross(a, b), c) / 6)
 
 
-def _proper(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Which faces have three different vertices."""
-    return np.asarray((faces != np.roll(faces, 1, axis=1)).all(axis=1))
+def proper(faces: NDArray[Index]) -> NDArray[Index]:
+    """The faces that have three different vertices."""
+    distinct: NDArray[np.bool_] = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return faces[distinct]
 
 
 def _edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64]]:

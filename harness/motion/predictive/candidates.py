@@ -14,7 +14,7 @@ def gather_candidates(world: World, k: int, now: float, layer: Layer) -> int:
     """Candidates from the cells: one's own grid, coarser grids around, finer grids within reach."""
     cells, grids, found = world.cells, world.cells.grids, world.scratch.found
     motion, place = world.spheres.motions[k], world.spheres.schedule[k]
-    own = place.grid
+    own = place.size_class
     around = block(grids[own], place.cell[0], place.cell[1], place.cell[2], layer)
     count = gather_block(cells, grids[own], around, found, 0)
     if grids.size > 1:

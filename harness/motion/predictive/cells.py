@@ -63,7 +63,7 @@ def cell_number(grid: Record, ix: int, iy: int, iz: int) -> int:
 @step
 def cell_of(cells: Cells, sphere: Record) -> int:
     """Place in `heads` of the cell in which a sphere stands."""
-    return cell_number(cells.grids[sphere.grid], sphere.cell[0], sphere.cell[1], sphere.cell[2])
+    return cell_number(cells.grids[sphere.size_class], sphere.cell[0], sphere.cell[1], sphere.cell[2])
 
 
 @step
@@ -109,7 +109,7 @@ def insert_by_position(cells: Cells, spheres: Spheres, k: int) -> None:
     """Put sphere k, which stands in no cell, where its position says."""
     own = spheres.schedule[k]
     for axis in range(3):
-        own.cell[axis] = index(cells.grids[own.grid], axis, spheres.motions[k].position[axis])
+        own.cell[axis] = index(cells.grids[own.size_class], axis, spheres.motions[k].position[axis])
     insert(cells, spheres.schedule, k)
 
 

@@ -145,7 +145,7 @@ def schedule_next(world: World, k: int, now: float) -> None:
     due = inf
     kind = Event.NOTHING
     met = 0
-    grid = cells.grids[own.grid]
+    grid = cells.grids[own.size_class]
     for axis in range(3):
         x = motion.position[axis]
         v = motion.velocity[axis]

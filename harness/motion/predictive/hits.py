@@ -6,10 +6,10 @@ from harness.kernel import step
 from harness.motion.predictive.burst import note_hit
 from harness.motion.predictive.clock import absolute, advance
 from harness.motion.predictive.codes import ResponseCode
-from harness.motion.predictive.numerics import approaches
 from harness.motion.predictive.response import answer_elastic, answer_reflect
 from harness.motion.predictive.state import PAIR_EVENT, WALL_EVENT, World
 from harness.motion.predictive.sums import add
+from harness.narrowphase.spheres import approaches
 
 
 @step
@@ -22,14 +22,17 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     motions, schedule, counts = spheres.motions, spheres.schedule, totals.counts[0]
     advance(world, k, now)
     advance(world, p, now)
-    if not approaches(
+    gap = (
         motions[p].position[0] - motions[k].position[0],
         motions[p].position[1] - motions[k].position[1],
         motions[p].position[2] - motions[k].position[2],
+    )
+    velocity = (
         motions[p].velocity[0] - motions[k].velocity[0],
         motions[p].velocity[1] - motions[k].velocity[1],
         motions[p].velocity[2] - motions[k].velocity[2],
-    ):
+    )
+    if not approaches(gap, velocity):
         return False
     swap = schedule[p].label < schedule[k].label
     i = p if swap else k

@@ -39,7 +39,7 @@ def prefetch_neighbours(world: World, k: int) -> None:
         for m in range(min(lists.members[k].count, 15)):
             prefetch(motions, lists.members[k].who[m])
     else:
-        grid = cells.grids[world.spheres.schedule[k].grid]
+        grid = cells.grids[world.spheres.schedule[k].size_class]
         ahead = cells_ahead(grid, world.spheres.schedule[k])
         for x in range(ahead.from_x, ahead.to_x + 1):
             for y in range(ahead.from_y, ahead.to_y + 1):
@@ -76,7 +76,7 @@ def prefetch_candidates(world: World, k: int) -> None:
         if partner >= 0:
             prefetch(lists.members, partner)
     else:
-        grid = cells.grids[spheres.schedule[k].grid]
+        grid = cells.grids[spheres.schedule[k].size_class]
         ahead = cells_ahead(grid, spheres.schedule[k])
         for x in range(ahead.from_x, ahead.to_x + 1):
             for y in range(ahead.from_y, ahead.to_y + 1):

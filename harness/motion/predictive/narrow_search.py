@@ -6,9 +6,11 @@ from harness.kernel import kernel
 from harness.motion.predictive.codes import Phase
 from harness.motion.predictive.solids import SolidWorld, motion_of
 from harness.motion.predictive.windows import close
-from harness.narrowphase.advancement import IMPACT, NEVER, STALLED, time_of_impact, time_of_wall_impact
-from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, Start, time_of_mesh_impact
-from harness.narrowphase.parting import time_of_mesh_parting, time_of_parting
+from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
+from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
+from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
+from harness.narrowphase.tree_pairs import NodePair
+from harness.narrowphase.verdicts import SearchVerdict
 
 
 @kernel
@@ -28,30 +30,30 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     hull, phase = body.shape.hull, window.phase
     hull_seeds = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
     coarse = body.concave and phase == Phase.APART
-    if coarse or not body.concave:
-        if phase == Phase.TOUCHING:
-            found = time_of_parting(hull, body.inradius, a, b, 0.0, left, 2.0 * tolerance, hull_seeds)
+    if phase == Phase.TOUCHING:
+        if body.concave:
+            ended = end_of_mesh_contact(body.shape, body.shape, a, b, 0.0, left, 2.0 * tolerance)
         else:
-            enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
-            found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
-        verdict, time, hull_seeds, steps = found.verdict, found.time, found.seeds, found.steps
+            ended = end_of_hull_contact(hull, hull, a, b, 0.0, left, 2.0 * tolerance)
+        verdict, time, steps = ended.verdict, ended.time, ended.steps
+    elif coarse or not body.concave:
+        enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
+        found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
+        verdict, time, hull_seeds, steps = found.verdict, found.time, found.warm_start, found.steps
     else:
-        start = Start(hull_seeds, (warm.surfaces[0], warm.surfaces[1]))
-        if phase == Phase.TOUCHING:
-            mesh_found = time_of_mesh_parting(body.shape, a, b, 0.0, left, 2.0 * tolerance, start)
-        else:
-            mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
+        start = MeshWarmStart(hull_seeds, NodePair(warm.surfaces[0], warm.surfaces[1]))
+        mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
         verdict, time, steps = mesh_found.verdict, mesh_found.time, mesh_found.steps
-        hull_seeds, (warm.surfaces[0], warm.surfaces[1]) = mesh_found.start
+        hull_seeds, (warm.surfaces[0], warm.surfaces[1]) = mesh_found.warm_start
     warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3] = hull_seeds
     counts.narrow_tests += 1
     counts.advancement_steps += steps
-    if verdict == NEVER:
+    if verdict == SearchVerdict.NEVER:
         close(solid.windows, k, w)
         return
     window.time = now + time
     # What has just parted cannot touch but by rounding
-    if verdict == STALLED or (phase == Phase.PARTING and time == 0.0):
+    if verdict == SearchVerdict.STALLED or (phase == Phase.PARTING and time == 0.0):
         if time < world.rules.cooldown:
             window.time = now + world.rules.cooldown
             counts.stalled_events += 1
@@ -76,7 +78,7 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     counts.box_tests += 1
     counts.advancement_steps += found.steps
     window.time = now + found.time
-    if found.verdict == IMPACT:
+    if found.verdict == SearchVerdict.FOUND:
         window.phase = Phase.DUE
     elif found.time < rules.cooldown:
         window.time = now + rules.cooldown

@@ -10,8 +10,8 @@ from math import inf
 from typing import NamedTuple
 
 from harness.kernel import step, strict_step
-from harness.motion.predictive.numerics import strict_time_to_touch, time_to_touch
 from harness.motion.predictive.state import LANES, Indices, Record, World
+from harness.narrowphase.spheres import strict_time_to_touch, time_to_touch
 
 
 class Prediction(NamedTuple):
@@ -52,12 +52,8 @@ def first_touch(world: World, k: int, now: float, candidates: Indices, count: in
             lanes.reach[m] = motions[p].radius + own.radius
         for m in range((size + WIDTH - 1) // WIDTH * WIDTH):
             lanes.due[m] = now + time_to_touch(
-                lanes.gap_x[m],
-                lanes.gap_y[m],
-                lanes.gap_z[m],
-                lanes.velocity_x[m],
-                lanes.velocity_y[m],
-                lanes.velocity_z[m],
+                (lanes.gap_x[m], lanes.gap_y[m], lanes.gap_z[m]),
+                (lanes.velocity_x[m], lanes.velocity_y[m], lanes.velocity_z[m]),
                 lanes.reach[m],
             )
         for m in range(size):
@@ -105,4 +101,4 @@ def onset(own: Record, other: Record, touching: float) -> float:
     reach = other.radius + own.radius
     if gap_x * gap_x + gap_y * gap_y + gap_z * gap_z <= (reach + touching) * (reach + touching):
         return inf
-    return float(begin + strict_time_to_touch(gap_x, gap_y, gap_z, velocity_x, velocity_y, velocity_z, reach))
+    return float(begin + strict_time_to_touch((gap_x, gap_y, gap_z), (velocity_x, velocity_y, velocity_z), reach))

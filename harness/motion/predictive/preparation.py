@@ -57,7 +57,7 @@ def prepare(start: InitialState, rules: Rules, record: bool) -> World:
     schedule["partner"] = NOBODY
     schedule["kind"] = Event.UNSCHEDULED
     schedule["label"] = order
-    schedule["grid"] = size_classes(start.radii)[order]
+    schedule["size_class"] = size_classes(start.radii)[order]
     return World(
         spheres=Spheres(motions, schedule, last_contacts=np.full(n, -np.inf)),
         queue=unscheduled(n),

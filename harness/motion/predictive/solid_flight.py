@@ -7,7 +7,7 @@ calls, are compiled as it is: they need memory of their own, and exact rounding.
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import inf
 
 from harness.kernel import kernel, step
 from harness.motion.predictive.burst import cooldown
@@ -18,10 +18,11 @@ from harness.motion.predictive.codes import Event, Phase, ResponseCode, Stop, Ta
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
 from harness.motion.predictive.hits import advance_to_plane, hit_pair, note_onset, reflect_from_wall
 from harness.motion.predictive.narrow_search import search_pair, search_wall
-from harness.motion.predictive.numerics import time_to_plane, time_to_touch
+from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
 from harness.motion.predictive.state import NOBODY
 from harness.motion.predictive.windows import close, close_all, find, next_due, open_on, shift_windows, valid
+from harness.narrowphase.spheres import passage, time_to_touch
 
 
 @kernel
@@ -179,7 +180,7 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     w = other.velocity[2] - own.velocity[2]
     reach = own.radius + other.radius
     inside = x * x + y * y + z * z <= reach * reach
-    wait = time_to_touch(x, y, z, u, v, w, reach)
+    wait = time_to_touch((x, y, z), (u, v, w), reach)
     if world.rules.response == ResponseCode.NONE and inside:
         wait = 0.0
     if wait == inf:
@@ -194,8 +195,7 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     phase = Phase.APART
     if world.rules.response == ResponseCode.NONE:
         # the window lasts as long as the spheres overlap
-        miss = (x * x + y * y + z * z) - approach * approach / speed if speed > 0.0 else 0.0
-        end = now + (sqrt(max(reach * reach - miss, 0.0) / speed) - approach / speed) if speed > 0.0 else inf
+        end = now + passage((x, y, z), (u, v, w), reach).leave
         if inside and not were_apart(solid, k, p, before, theirs):
             phase = Phase.UNSURE
     else:
@@ -247,7 +247,7 @@ def schedule_next(solid: SolidWorld, k: int, now: float) -> None:
     kind = Event.NOTHING
     met = 0
     held = NOBODY
-    grid = cells.grids[own.grid]
+    grid = cells.grids[own.size_class]
     for axis in range(3):
         v = motion.velocity[axis]
         up = 1 if v > 0.0 else 0

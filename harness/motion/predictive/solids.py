@@ -17,7 +17,7 @@ from harness.kernel import kernel, step
 from harness.motion.predictive.double_double import DOUBLE_DOUBLE, angle_after, norm
 from harness.motion.predictive.state import Record, Records, World
 from harness.motion.predictive.windows import Windows
-from harness.narrowphase.advancement import Motion
+from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import support_map
 from harness.narrowphase.triangle_tree import triangle_tree
@@ -35,17 +35,17 @@ class Form:
     Parameters
     ----------
     scene : Scene of shape `hull` or `mesh`
+    surface : whether the surface is to be searched where hulls touch; by default where the scene needs it
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, surface: bool | None = None) -> None:
         if scene.mesh is None or scene.shape == "sphere":
             raise ValueError("a sphere has no surface to search")
         mesh, hull = scene.mesh, scene.mesh.hull
-        self.concave = needs_its_surface(scene)
+        self.concave = needs_its_surface(scene) if surface is None else surface
         faces = mesh.faces if self.concave else mesh.faces[:1]
         tree = triangle_tree(mesh.vertices, faces)
         self.shape = MeshShape(support_map(hull.vertices), tree, 0.5)
-        self.inradius = scene.mesh.hull.inradius
 
 
 def needs_its_surface(scene: Scene) -> bool:
@@ -64,7 +64,6 @@ class Solids(NamedTuple):
     ----------
     shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree holds one triangle only
     concave : whether the surface is to be searched where hulls touch
-    inradius : of a sphere around the centre that the hull holds
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
     spins : (n, 3) rad/s, in the world
@@ -77,7 +76,6 @@ class Solids(NamedTuple):
 
     shape: MeshShape
     concave: bool
-    inradius: float
     sizes: Floats
     reaches: Floats
     spins: Floats
@@ -111,7 +109,7 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     measure(form.shape.hull.vertices, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
     turns = start.copy()
-    return Solids(form.shape, form.concave, form.inradius, sizes, reaches, spins, rates, start, turns, tolerance, scale)
+    return Solids(form.shape, form.concave, sizes, reaches, spins, rates, start, turns, tolerance, scale)
 
 
 @kernel

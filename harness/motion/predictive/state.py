@@ -47,7 +47,7 @@ SCHEDULE = np.dtype(
         ("label", np.int32),  # the caller's numbering, which breaks ties
         ("burst_hits", np.int32),  # of the present collision burst
         ("cell", np.int32, 3),  # along x, y, z
-        ("grid", np.int32),
+        ("size_class", np.int32),
     ],
     align=True,
 )
@@ -114,8 +114,8 @@ ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align
 EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
 PAIR_EVENT, WALL_EVENT = 0, 1
 
-# Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that the columns
-# do not overlap.
+# Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that columns do
+# not overlap.
 LANES = 64
 CANDIDATES = np.dtype(
     [
