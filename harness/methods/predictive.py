@@ -28,7 +28,8 @@ from harness.motion.finite import require_finite_state
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
-from harness.motion.predictive.preparation import check, choose_search
+from harness.motion.predictive.initial import check
+from harness.motion.predictive.rules import choose_search
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form, needs_its_surface

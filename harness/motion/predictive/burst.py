@@ -1,55 +1,57 @@
-"""Many hits in no time: told from endless ones, which are made to wait.
+"""Collision bursts: hits of one sphere that follow each other within the burst window.
 
-Elastic hits in no time are finite in number, however many (a light ball between a heavy one and a wall). Mirrored
-velocities of a sphere that overlaps several others, or a ball larger than its box, can go on forever, some of them in
-steps of 1e-17 s. A sphere that has had its share waits a `pause` for its next hit, and each such wait is counted.
+Elastic bursts are finite, however long (a light ball between a heavy one and a wall). Mirrored velocities of a sphere
+that overlaps several others, or a ball larger than its box, can go on forever, some of them in steps of 1e-17 s. So a
+sphere whose burst has reached the limit waits for a cooldown before each further hit, and each such wait is counted.
 """
 
 from __future__ import annotations
 
 from harness.kernel import step
-from harness.motion.predictive import tournament
-from harness.motion.predictive.state import CROSSING, PAIR, WALL, World
+from harness.motion.predictive.codes import Event
+from harness.motion.predictive.events import enqueue
+from harness.motion.predictive.state import World
 
 
 @step
-def note_hit(world: World, k: int, now: float, blink: float) -> None:
-    """Sphere k's velocity changed: events made for the old one are stale; it may be one more hit in no time."""
+def note_hit(world: World, k: int, now: float, window: float) -> None:
+    """Count a change of sphere k's velocity, which makes events for the old one stale, and its part in a burst.
+
+    The hit belongs to the burst of the last one if it comes within the window (s).
+    """
     own, rules = world.spheres.schedule[k], world.rules
     own.hits += 1
-    since = now - own.last_hit  # "no time" is what is not longer than a blink
-    stalled = own.burst >= rules.burst and since <= 2.0 * rules.pause
-    if since <= blink:
-        own.burst += 1
+    since = now - own.last_hit
+    stalled = own.burst_hits >= rules.burst_limit and since <= 2.0 * rules.cooldown
+    if since <= window:
+        own.burst_hits += 1
     elif not stalled:
-        own.burst = 0
+        own.burst_hits = 0
     own.last_hit = now
 
 
 @step
 def defer_if_stalled(world: World, k: int, now: float) -> bool:
-    """Put off the hit that sphere k holds if it, or its partner, has had too many in no time."""
+    """Put off the hit that sphere k's event is if it, or its partner, must wait for the end of its cooldown."""
     own = world.spheres.schedule[k]
     wait = 0.0
-    if own.kind == PAIR:
-        wait = max(patience(world, k, now), patience(world, own.partner, now))
-    elif own.kind >= WALL and own.kind < CROSSING:
-        wait = patience(world, k, now)
+    if own.kind == Event.PAIR:
+        wait = max(cooldown(world, k, now), cooldown(world, own.partner, now))
+    elif own.kind == Event.WALL:
+        wait = cooldown(world, k, now)
     if wait <= 0.0:
         return False
-    agenda = world.agenda
-    if own.kind == PAIR:
+    if own.kind == Event.PAIR:
         own.pair_time = now + wait
-    agenda.times[agenda.times.size // 2 + k] = now + wait
-    tournament.replay(agenda, world.spheres.schedule, k)
-    world.tally.counts[0].stalled_events += 1
+    enqueue(world, k, now + wait)
+    world.totals.counts[0].stalled_events += 1
     return True
 
 
 @step
-def patience(world: World, k: int, now: float) -> float:
-    """How long a sphere must wait for its next hit."""
+def cooldown(world: World, k: int, now: float) -> float:
+    """For how long, s, sphere k must wait before its next hit."""
     own = world.spheres.schedule[k]
-    if own.burst < world.rules.burst or now - own.last_hit > world.rules.blink:
+    if own.burst_hits < world.rules.burst_limit or now - own.last_hit > world.rules.burst_window:
         return 0.0
-    return world.rules.pause
+    return world.rules.cooldown

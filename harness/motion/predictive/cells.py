@@ -1,12 +1,12 @@
 """Cells: which spheres a sphere can touch before it leaves its own cell and the 26 around it.
 
-A grid for each size class, with cells of about the diameter of the largest in it; a sphere stands only in its own grid.
-It crosses into the next cell by an event of its own, and then looks only at the layer of cells that are new to it.
+There is a grid for each size class, and a sphere stands only in its own. It crosses into the next cell by an event of
+its own, and then searches only the layer of cells that are new to it.
 
-A sphere meets larger ones through the 27 cells around it in their grids, each time it looks. It meets smaller ones
-through the cells of theirs that a ball around it covers, as far as it can fly before it looks again (`margin`). A
-cell of a coarser grid is at least the two radii, the finer cell and two margins wide: then a small sphere that comes
-into that ball from outside crosses into its last cell while the large one is among its 27.
+A sphere finds larger ones in the 27 cells around it in their grids, whenever it predicts. It finds smaller ones in the
+cells of theirs that a ball around it covers, as far as it can fly before it predicts again (`margin`). A cell of a
+coarser grid is at least the two radii, the finer cell and two margins wide: then a small sphere that comes into that
+ball from outside crosses into its last cell while the large one is among its 27.
 """
 
 from __future__ import annotations
@@ -15,23 +15,15 @@ from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from harness.kernel import step
-from harness.motion.predictive.state import GRID, Cells, Floats, Indices, Record, Records, Spheres
+from harness.motion.predictive.state import Cells, Indices, Record, Records, Spheres
 
-# Radii of one class are within this ratio.
-CLASS_RATIO = 3.0
-# Cells of a grid for each of its spheres, at most. Eight still are as fast as fewer at packing .01.
-CELLS_PER_SPHERE = 8
-# Cells are wider than they must be by this fraction, so that rounding at a crossing cannot lose a neighbour.
-SLACK = 1e-6
-
-ALL = 3  # instead of an axis: look at all cells around
+ALL = 3  # instead of an axis: all the cells around
 
 
 class Layer(NamedTuple):
-    """Which of the cells around a sphere to look at.
+    """Which of the cells around a sphere are to be searched.
 
     axis : 0, 1, 2: the layer of 9 that lies ahead along it; `ALL`: all 27
     step : 1 up the axis, -1 down
@@ -55,68 +47,6 @@ class Block(NamedTuple):
     to_z: int
 
 
-def build(half_box: Floats, radii: Floats, skin: float) -> Cells:
-    """Empty grids for these spheres.
-
-    Parameters
-    ----------
-    half_box : (3,) m
-    radii : (n,) m
-    skin : how much wider than a diameter the cells must be, m (for neighbour lists)
-    """
-    classes = size_classes(radii)
-    grids = np.zeros(int(classes.max(initial=0)) + 1, dtype=GRID)
-    needed = np.zeros(3)
-    finer = 0.0
-    width = np.inf  # of the narrowest cell of a finer grid
-    for level in reversed(range(len(grids))):
-        members = radii[classes == level]
-        largest = float(members.max(initial=0.0))
-        # few small spheres stand in wide cells: a margin of their own size would be flown through again and again
-        margin = max(0.1 * largest, 0.5 * finer, 0.25 * width) if finer else 0.0
-        least = np.maximum(2.0 * largest + skin, needed + largest + 2.0 * margin if finer else 0.0)
-        shape = cell_counts(
-            half_box, least * (1.0 + SLACK) + 1e-14 * half_box.max(), CELLS_PER_SPHERE * len(members) + 27
-        )
-        side = 2.0 * half_box / shape
-        grids[level] = shape, 0, -half_box, side, largest, margin
-        finer, width = max(finer, largest), min(width, float(side.min()))
-        needed = np.maximum(needed, side + largest)
-    sizes = grids["shape"].prod(axis=1)
-    grids["first"] = np.concatenate(([0], np.cumsum(sizes)[:-1]))
-    count = len(radii)
-    return Cells(
-        heads=np.full(int(sizes.sum()), count, dtype=np.uint32),
-        following=np.full(count + 1, count, dtype=np.uint32),
-        grids=grids,
-        renewals=np.full(count, np.inf),
-    )
-
-
-def size_classes(radii: Floats) -> NDArray[np.int32]:
-    """(n,) class of each sphere, 0 the largest; classes without a sphere are left out."""
-    classes = np.zeros(len(radii), dtype=np.int32)
-    rest = radii
-    while len(rest := rest[rest * CLASS_RATIO < rest.max(initial=0.0)]):
-        classes[radii <= rest.max()] += 1
-    return classes
-
-
-def cell_counts(half_box: Floats, least: Floats, most: int) -> NDArray[np.int64]:
-    """(3,) cells along each axis, none smaller than `least` (3,) unless alone on its axis, `most` in all."""
-
-    def counts(growth: float) -> NDArray[np.int64]:
-        return np.maximum(np.minimum(2.0 * half_box / (least * growth), 1e9).astype(np.int64), 1)
-
-    low, high = 1.0, 1.0
-    while counts(high).astype(float).prod() > most:
-        low, high = high, 2.0 * high
-    for _ in range(40 if high > 1.0 else 0):
-        middle = sqrt(low * high)
-        low, high = (middle, high) if counts(middle).astype(float).prod() > most else (low, middle)
-    return counts(high)
-
-
 @step
 def index(grid: Record, axis: int, x: float) -> int:
     """Cell along an axis; the outermost cells reach out to infinity."""
@@ -134,6 +64,22 @@ def cell_number(grid: Record, ix: int, iy: int, iz: int) -> int:
 def cell_of(cells: Cells, sphere: Record) -> int:
     """Place in `heads` of the cell in which a sphere stands."""
     return cell_number(cells.grids[sphere.size_class], sphere.cell[0], sphere.cell[1], sphere.cell[2])
+
+
+@step
+def layer_beyond(face: int) -> Layer:
+    """The layer of cells beyond a face of a cell: x-, x+, y-, y+, z-, z+."""
+    return Layer(face // 2, 2 * (face % 2) - 1)
+
+
+@step
+def cross(cells: Cells, schedule: Records, k: int) -> Layer:
+    """Sphere k goes through the face of its cell that its event names. Returns the layer that is new to it."""
+    layer = layer_beyond(schedule[k].face)
+    remove(cells, schedule, k)
+    schedule[k].cell[layer.axis] += layer.step
+    insert(cells, schedule, k)
+    return layer
 
 
 @step
@@ -159,7 +105,7 @@ def remove(cells: Cells, schedule: Records, k: int) -> None:
 
 
 @step
-def settle(cells: Cells, spheres: Spheres, k: int) -> None:
+def insert_by_position(cells: Cells, spheres: Spheres, k: int) -> None:
     """Put sphere k, which stands in no cell, where its position says."""
     own = spheres.schedule[k]
     for axis in range(3):

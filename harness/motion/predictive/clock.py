@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from harness.kernel import step
 from harness.motion.predictive import tournament
-from harness.motion.predictive.state import FRESH, NONE, Record, World
+from harness.motion.predictive.codes import Event, ResponseCode
+from harness.motion.predictive.state import Record, World
 
 
 @step
@@ -19,12 +20,12 @@ def relative(clock: Record, time: float) -> float:
 
 @step
 def absolute(clock: Record, now: float) -> float:
-    """Seconds since the start."""
+    """Seconds since the start, of a time counted from the base."""
     return float(clock.epoch + (clock.epoch_rest + now))
 
 
 @step
-def catch_up(world: World, k: int, now: float) -> None:
+def advance(world: World, k: int, now: float) -> None:
     """Move sphere k to the present."""
     motion = world.spheres.motions[k]
     flown = now - motion.time
@@ -35,36 +36,36 @@ def catch_up(world: World, k: int, now: float) -> None:
 
 @step
 def rebase(world: World) -> None:
-    """Make the present the origin of time. Done every so many events, however the run is cut into pieces."""
-    if world.rules.response == NONE:
-        # Onset times are known again by their bits; those of moved spheres differ, so all look again
-        base = world.tally.clock[0].now
+    """Make the present the base of time. Done every so many events, however the run is cut into pieces."""
+    if world.rules.response == ResponseCode.NONE:
+        # Onset times are known again by their bits; those of moved spheres differ, so all predict anew
+        now = world.totals.clock[0].now
         for k in range(world.spheres.motions.size):
-            catch_up(world, k, base)
-            world.spheres.schedule[k].kind = FRESH
-            world.agenda.times[world.agenda.times.size // 2 + k] = base
-    shift(world)
+            advance(world, k, now)
+            world.spheres.schedule[k].kind = Event.UNSCHEDULED
+            world.queue.times[world.queue.times.size // 2 + k] = now
+    shift_times(world)
 
 
 @step
-def shift(world: World) -> None:
+def shift_times(world: World) -> None:
     """Count all times from the present."""
-    clock, agenda = world.tally.clock[0], world.agenda
+    clock, queue = world.totals.clock[0], world.queue
     base = clock.now
-    leaf = agenda.times.size // 2
+    leaf = queue.times.size // 2
     for k in range(world.spheres.motions.size):
         world.spheres.motions[k].time -= base
         world.spheres.schedule[k].last_hit -= base
         world.spheres.schedule[k].pair_time -= base
-        world.spheres.contacts[k] -= base
+        world.spheres.last_contacts[k] -= base
         world.cells.renewals[k] -= base
-        agenda.times[leaf + k] -= base
+        queue.times[leaf + k] -= base
     whole = clock.epoch + base
     # Exact remainder of the addition (Dekker), as the base is never larger than the new epoch
     clock.epoch_rest += (clock.epoch - whole) + base if clock.epoch >= base else (base - whole) + clock.epoch
     clock.epoch = whole
-    world.tally.onset[0].time -= base
     clock.now = 0.0
-    world.tally.counts[0].since_rebasing = 0
-    world.tally.counts[0].rebasings += 1
-    tournament.rebuild(agenda, world.spheres.schedule)
+    world.totals.onset[0].time -= base
+    world.totals.counts[0].since_rebasing = 0
+    world.totals.counts[0].rebasings += 1
+    tournament.rebuild(queue, world.spheres.schedule)

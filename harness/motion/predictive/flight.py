@@ -1,213 +1,181 @@
-"""The loop: take the next event, let it happen, look for the next event of whom it concerned.
+"""The event loop of spheres: take the next event, carry it out, predict the next event of whom it concerned.
 
-Each sphere holds one event, its own earliest; a pair event is held by whichever of the two looked last, with the
+Each sphere holds one event, its own earliest; a pair event is held by whichever of the two predicted last, with the
 other's count of hits. A held event can only be too early (the partner flew elsewhere), never too late: whoever
-changes its velocity looks at all its neighbours. So an event that turns out stale costs one more look and nothing
+changes its velocity looks at all its neighbours. So an event that turns out stale costs one more prediction and nothing
 else.
 """
 
 from __future__ import annotations
 
 from math import inf
-from typing import NamedTuple
 
 from harness.kernel import loop, step
 from harness.motion.predictive import tournament
 from harness.motion.predictive.burst import defer_if_stalled
-from harness.motion.predictive.cells import ALL, Layer, insert, next_face, remove, settle
-from harness.motion.predictive.clock import catch_up, rebase, relative
-from harness.motion.predictive.hits import begin_to_touch, hit_pair, hit_wall
-from harness.motion.predictive.lookahead import look_ahead
+from harness.motion.predictive.candidates import gather_candidates
+from harness.motion.predictive.cells import AROUND, cross, insert, insert_by_position, next_face
+from harness.motion.predictive.clock import advance, rebase, relative
+from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode, Stop, Task
+from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
+from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
+from harness.motion.predictive.lookahead import prefetch_ahead
 from harness.motion.predictive.neighbours import renew, time_to_leave
 from harness.motion.predictive.numerics import time_to_plane
-from harness.motion.predictive.search import first_onset, first_touch
-from harness.motion.predictive.state import (
-    CELLS,
-    CROSSING,
-    LISTS,
-    NONE,
-    NOTHING,
-    PAIR,
-    RENEWAL,
-    WALL,
-    World,
-)
-from harness.motion.predictive.surroundings import gather
-
-# Why the loop returned.
-REACHED, SPENT, FULL, CROWDED, UNTIDY = range(5)
-
-NOBODY = -1
-
-
-class Aftermath(NamedTuple):
-    """What is to be done after an event.
-
-    other : the other sphere that must look again, or `NOBODY`
-    layer : the cells that are new to those who look
-    room : False if a neighbour list is full
-    """
-
-    other: int
-    layer: Layer
-    room: bool
+from harness.motion.predictive.pair_search import first_onset, first_touch
+from harness.motion.predictive.state import NOBODY, World
 
 
 @loop
-def populate(world: World, settled: bool) -> None:
-    """Put all spheres into their cells: the ones of their records, or else those where their positions are.
+def populate(world: World, placed: bool) -> None:
+    """Put all spheres into their cells and rebuild the event queue.
 
-    Play all matches.
+    Placed spheres go into the cells that their records name, others into those where their positions are.
     """
     for k in range(world.spheres.motions.size):
-        if settled:
+        if placed:
             insert(world.cells, world.spheres.schedule, k)
         else:
-            settle(world.cells, world.spheres, k)
-    tournament.rebuild(world.agenda, world.spheres.schedule)
+            insert_by_position(world.cells, world.spheres, k)
+    tournament.rebuild(world.queue, world.spheres.schedule)
 
 
 @loop
-def fly(world: World, until: float, budget: int) -> int:
+def fly(world: World, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
-    agenda, counts, clock = world.agenda, world.tally.counts[0], world.tally.clock[0]
+    queue, rules, clock = world.queue, world.rules, world.totals.clock[0]
     limit = relative(clock, until)
     while True:
-        k = int(agenda.winners[1])
-        now = agenda.times[1]
-        if not now <= limit or now == inf:
-            return REACHED
-        if counts.pair_hits + counts.box_hits >= budget:
-            return SPENT
-        if counts.since_rebasing >= world.rules.span and now > clock.now:
+        stop = reason_to_stop(world, limit, budget)
+        if stop == Stop.REBASE:
             rebase(world)
             limit = relative(clock, until)
-            if world.rules.tidying > 0 and counts.rebasings % world.rules.tidying == 0:
-                return UNTIDY
+            if rules.bases_per_order > 0 and world.totals.counts[0].rebasings % rules.bases_per_order == 0:
+                return Stop.REORDER
             continue
-        if counts.recorded == world.journal.size and counts.recorded > 0:
-            return FULL
+        if stop != Stop.NOT:
+            return stop
+        k = int(queue.winners[1])
+        now = queue.times[1]
         if defer_if_stalled(world, k, now):
             continue
-        clock.now = now
-        counts.since_rebasing += 1
-        after = happen(world, k, now)
-        if not after.room:
-            return CROWDED
-        # One place to look from, for the one or two spheres concerned: the search is inlined once.
+        begin(world, now)
+        after = process_event(world, k, now)
+        if after.task == Task.GIVE_UP:
+            return Stop.NO_ROOM
+        # One call for the one or two spheres concerned, as the search is inlined wherever it is called
         for turn in range(2):
             who = k if turn == 0 else after.other
             if who >= 0:
-                look(world, who, now, after.layer)
-                tournament.replay(agenda, world.spheres.schedule, who)
-                if world.rules.crowded:
-                    look_ahead(world, who)
+                predict(world, who, now, after)
+                schedule_next(world, who, now)
+                if rules.prefetching:
+                    prefetch_ahead(world, who)
 
 
 @step
-def happen(world: World, k: int, now: float) -> Aftermath:
-    """Carry out sphere k's event."""
-    schedule, counts = world.spheres.schedule, world.tally.counts[0]
-    kind = int(schedule[k].kind)
+def process_event(world: World, k: int, now: float) -> FollowUp:
+    """Carry out the event that sphere k holds."""
+    schedule, counts = world.spheres.schedule, world.totals.counts[0]
+    own = schedule[k]
+    task = Task.PREDICT
     other = NOBODY
-    axis = ALL
-    step = 0
-    room = True
-    if kind == PAIR:
-        p = int(schedule[k].partner)
-        if schedule[p].hits == schedule[k].partner_hits:
-            if world.rules.response == NONE:
-                begin_to_touch(world, k, p, now)
+    layer = AROUND
+    if own.kind == Event.PAIR:
+        p = int(own.partner)
+        if schedule[p].hits == own.partner_hits:
+            if world.rules.response == ResponseCode.NONE:
+                note_onset(world, k, p, now)
             elif hit_pair(world, k, p, now):
                 other = p
         else:
             counts.stale_events += 1
-    elif kind < CROSSING and kind >= WALL:
-        hit_wall(world, k, kind - WALL, now)
-    elif kind < RENEWAL and kind >= CROSSING:
-        axis = (kind - CROSSING) // 2
-        step = 2 * ((kind - CROSSING) % 2) - 1
-        remove(world.cells, schedule, k)
-        schedule[k].cell[axis] += step
-        insert(world.cells, schedule, k)
+    elif own.kind == Event.WALL:
+        hit_wall(world, k, own.face, now)
+    elif own.kind == Event.CROSSING:
+        task = Task.EXTEND
+        layer = cross(world.cells, schedule, k)
         counts.cell_crossings += 1
-    elif world.rules.method == LISTS:
-        catch_up(world, k, now)
+    elif world.rules.neighbours == NeighbourSearch.LISTS:
+        advance(world, k, now)
         counts.list_renewals += 1
-        room = renew(world, k)
-    return Aftermath(other, Layer(axis, step), room)
+        if not renew(world, k):
+            task = Task.GIVE_UP
+    return FollowUp(task, other, layer)
 
 
 @step
-def look(world: World, k: int, now: float, layer: Layer) -> None:
-    """Find sphere k's next event.
+def predict(world: World, k: int, now: float, after: FollowUp) -> None:
+    """Find sphere k's next pair event.
 
-    After a crossing its pair candidate stands, and only the new layer of cells is looked at.
+    After a crossing its pair candidate stands, and only the new layer of cells is searched.
     """
-    schedule, counts = world.spheres.schedule, world.tally.counts[0]
+    schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
     candidates = world.scratch.found
-    if world.rules.method == LISTS:
+    if world.rules.neighbours == NeighbourSearch.LISTS:
         count = int(world.lists.members[k].count)
         candidates = world.lists.members[k].who[:]
     else:
-        count = gather(world, k, now, layer)
-        counts.pair_tests -= layer.axis == ALL  # itself among them: zero gap, no hit
+        count = gather_candidates(world, k, now, after.layer)
+        counts.pair_tests -= after.task == Task.PREDICT  # itself among them: zero gap, no hit
     counts.pair_tests += count
-    if world.rules.response == NONE:
-        time, partner = first_onset(world, k, now, candidates, count)
+    if world.rules.response == ResponseCode.NONE:
+        found = first_onset(world, k, now, candidates, count)
     else:
-        time, partner = first_touch(world, k, now, candidates, count)
-    if layer.axis == ALL:
+        found = first_touch(world, k, now, candidates, count)
+    known = own.pair_time
+    if after.task == Task.PREDICT:
         counts.predictions += 1
         known = inf
-    else:
-        known = own.pair_time
+    time, partner = found.time, found.partner
     tie = time == known and time < inf and schedule[partner].label < schedule[own.partner].label
-    if layer.axis == ALL or time < known or tie:
+    if after.task == Task.PREDICT or time < known or tie:
         own.pair_time = time
         own.partner = partner
         own.partner_hits = schedule[partner].hits if partner >= 0 else 0
-    schedule_next(world, k, now)
 
 
 @step
 def schedule_next(world: World, k: int, now: float) -> None:
-    """The earliest of sphere k's pair candidate, walls, cell faces and renewal goes to its leaf."""
-    agenda, cells, rules = world.agenda, world.cells, world.rules
+    """Schedule the earliest of sphere k's pair candidate, walls, cell faces and renewal."""
+    cells, rules = world.cells, world.rules
     motion, own = world.spheres.motions[k], world.spheres.schedule[k]
     begin = motion.time
     due = inf
-    kind = NOTHING
+    kind = Event.NOTHING
+    met = 0
     grid = cells.grids[own.size_class]
     for axis in range(3):
         x = motion.position[axis]
         v = motion.velocity[axis]
         up = 1 if v > 0.0 else 0
         plane = rules.half_box[axis] - motion.radius
-        if rules.method == LISTS and abs(world.lists.anchors[k, axis]) + rules.skin < plane:
+        if rules.neighbours == NeighbourSearch.LISTS and abs(world.lists.anchors[k, axis]) + rules.skin < plane:
             continue  # the list must be renewed before the wall can be reached
         distance = (plane if v > 0.0 else -plane) - x
-        target = WALL + 2 * axis + up
-        if rules.method == CELLS:
+        target = Event.WALL
+        if rules.neighbours == NeighbourSearch.CELLS:
             face = next_face(grid, axis, own.cell[axis] + up, up) - x
             if (face < distance) == (v > 0.0):
                 distance = face
-                target = CROSSING + 2 * axis + up
+                target = Event.CROSSING
         time = begin + time_to_plane(distance, v)
         if time < due:
             due = time
             kind = target
+            met = 2 * axis + up
     renewal = inf
-    if rules.method == LISTS:
+    if rules.neighbours == NeighbourSearch.LISTS:
         renewal = time_to_leave(world.lists, world.spheres.motions, k, rules.skin)
     elif cells.grids.size > 1:
         renewal = cells.renewals[k]
     if renewal < due:
         due = renewal
-        kind = RENEWAL
+        kind = Event.RENEWAL
     if own.pair_time <= due:
         due = own.pair_time
-        kind = PAIR if due < inf else NOTHING
+        kind = Event.PAIR if due < inf else Event.NOTHING
     own.kind = kind
-    agenda.times[agenda.times.size // 2 + k] = max(due, now)
+    own.face = met
+    enqueue(world, k, max(due, now))

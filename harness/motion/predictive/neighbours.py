@@ -1,8 +1,8 @@
 """Neighbour lists: who can touch whom before either has moved half the skin from its anchor.
 
-Best in a dense fluid, where a sphere collides many times before it leaves its cage. Anchors stand in the cells;
-leaving the neighbourhood of one's anchor is an event, which makes this sphere's list anew and mends those of its
-neighbours.
+Best in a dense fluid, where a sphere collides many times before it leaves its cage. The cells hold the spheres by their
+anchors. Leaving the neighbourhood of its anchor is an event: the sphere's list is renewed, and those of its neighbours
+are corrected.
 """
 
 from __future__ import annotations
@@ -10,22 +10,22 @@ from __future__ import annotations
 from math import inf, sqrt
 
 from harness.kernel import step
-from harness.motion.predictive.cells import AROUND, block, gather_block, remove, settle
+from harness.motion.predictive.cells import AROUND, block, gather_block, insert_by_position, remove
 from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
 
 
 @step
 def renew(world: World, k: int) -> bool:
-    """Anchor sphere k where it is (at the present) and list its neighbours. False: no room in a list."""
+    """Anchor sphere k where it is at the present and list its neighbours. Returns False if a list is full."""
     spheres, cells, lists, found = world.spheres, world.cells, world.lists, world.scratch.found
     members = lists.members
     own, place = members[k], spheres.schedule[k]
     for m in range(own.count):
-        strike_out(members[own.who[m]], k)
+        remove_neighbour(members[own.who[m]], k)
     for axis in range(3):
         lists.anchors[k, axis] = spheres.motions[k].position[axis]
     remove(cells, spheres.schedule, k)
-    settle(cells, spheres, k)
+    insert_by_position(cells, spheres, k)
     around = block(cells.grids[0], place.cell[0], place.cell[1], place.cell[2], AROUND)
     count = gather_block(cells, cells.grids[0], around, found, 0)
     degree = 0
@@ -55,8 +55,8 @@ def near(lists: Lists, motions: Records, k: int, p: int, skin: float) -> bool:
 
 
 @step
-def strike_out(neighbours: Record, k: int) -> None:
-    """Take k off a list."""
+def remove_neighbour(neighbours: Record, k: int) -> None:
+    """Take sphere k off a list."""
     last = neighbours.count - 1
     for m in range(last):
         if neighbours.who[m] == k:

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from harness.motion.predictive.state import Floats, World
 
 # Fewer spheres than this fit into the cache in any order.
-CROWD = 2048
+REORDERED_FROM = 2048
 
 
 def along_curve(positions: Floats, half_box: Floats) -> NDArray[np.intp]:
     """(n,) order of the spheres along a Morton curve of 2^21 steps a side."""
-    if len(positions) < CROWD:
+    if len(positions) < REORDERED_FROM:
         return np.arange(len(positions))
     place = np.clip((positions + half_box) / (2.0 * half_box.max()), 0.0, 1.0)
     x, y, z = (spread(axis) for axis in (place * (2**21 - 1)).astype(np.uint64).T)
@@ -37,15 +37,15 @@ def spread(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
     return bits
 
 
-def tidy(world: World) -> None:
+def reorder(world: World) -> None:
     """Put the spheres of a running world in order again; they stand in no cell afterwards."""
-    spheres, agenda, cells, lists = world.spheres, world.agenda, world.cells, world.lists
+    spheres, queue, cells, lists = world.spheres, world.queue, world.cells, world.lists
     count = len(spheres.motions)
-    order = along_curve(positions_at(world, float(world.tally.clock["now"][0])), world.rules.half_box)
+    order = along_curve(positions_at(world, float(world.totals.clock["now"][0])), world.rules.half_box)
     moved_to = np.empty(count, dtype=np.int64)
     moved_to[order] = np.arange(count)
-    leaves = agenda.times[len(agenda.times) // 2 :][:count]
-    for array in (spheres.motions, spheres.schedule, spheres.contacts, cells.renewals, leaves):
+    leaves = queue.times[len(queue.times) // 2 :][:count]
+    for array in (spheres.motions, spheres.schedule, spheres.last_contacts, cells.renewals, leaves):
         array[:] = array[order]
     partners = spheres.schedule["partner"]
     partners[:] = np.where(partners >= 0, moved_to[partners], -1)

@@ -8,7 +8,7 @@ from harness.kernel import step
 from harness.motion.predictive.state import Record
 
 
-class Bounce(NamedTuple):
+class ElasticHit(NamedTuple):
     """What an elastic hit leaves behind.
 
     virial : |impulse| times the distance of centres, kg m^2/s
@@ -20,7 +20,7 @@ class Bounce(NamedTuple):
 
 
 @step
-def bounce(a: Record, b: Record, mass_a: float, mass_b: float, restitution: float) -> Bounce:
+def answer_elastic(a: Record, b: Record, mass_a: float, mass_b: float, restitution: float) -> ElasticHit:
     """Equal and opposite impulses; both motions are at the same time."""
     gap_x = b.position[0] - a.position[0]
     gap_y = b.position[1] - a.position[1]
@@ -43,11 +43,11 @@ def bounce(a: Record, b: Record, mass_a: float, mass_b: float, restitution: floa
     b.velocity[2] -= share_b * kick * gap_z
     reduced = mass_a * share_a
     lost = 0.5 * reduced * (1.0 - restitution * restitution) * (approach * (approach / square))
-    return Bounce(-(1.0 + restitution) * reduced * approach, lost)
+    return ElasticHit(-(1.0 + restitution) * reduced * approach, lost)
 
 
 @step
-def flip(a: Record, b: Record, mass_a: float, mass_b: float) -> float:
+def answer_reflect(a: Record, b: Record, mass_a: float, mass_b: float) -> float:
     """Each velocity is mirrored in the plane across the line of centres. Returns the pair's share of the virial."""
     gap_x = b.position[0] - a.position[0]
     gap_y = b.position[1] - a.position[1]

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from math import inf
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from harness.errors import InputError
-from harness.motion.predictive import cells
-from harness.motion.predictive.flight import CROWDED, FULL, SPENT, UNTIDY, fly, populate
-from harness.motion.predictive.order import labelled, positions_at, tidy
-from harness.motion.predictive.preparation import RESPONSES, SEARCHES, check, choose_search, lists, prepare
-from harness.motion.predictive.state import CELLS, EVENT, FRESH, PAIR_EVENT, WALL_EVENT, Floats
+from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
+from harness.motion.predictive.flight import fly, populate
+from harness.motion.predictive.grids import empty_grids, size_classes
+from harness.motion.predictive.initial import check
+from harness.motion.predictive.order import labelled, positions_at, reorder
+from harness.motion.predictive.preparation import empty_lists, prepare
+from harness.motion.predictive.rules import RESPONSES, SEARCHES, choose_search, make_rules
+from harness.motion.predictive.state import EVENT, PAIR_EVENT, WALL_EVENT, Floats
 
-__all__ = ["EVENT", "PAIR_EVENT", "WALL_EVENT", "Simulation", "warm_up"]
-
-# Counts that are only of use inside, or to bodies of other shapes.
-INTERNAL = ("narrow_tests", "box_tests", "advancement_steps", "rebasings", "since_rebasing", "recorded")
+__all__ = ["EVENT", "PAIR_EVENT", "WALL_EVENT", "Simulation"]
 
 
 class Simulation:
@@ -28,13 +29,29 @@ class Simulation:
     positions, velocities : (n, 3) array_like, m and m/s; the box is centred at the origin
     radii, masses : (n,) array_like, m and kg
     half_box : (3,) array_like, m, half the sides
-    response : 'reflect' (each velocity's normal component is mirrored), 'elastic' (impulses by mass) or 'none'
-    (spheres pass
-        through each other, and a pair event is the onset of touching)
+    response : 'reflect' (each velocity's normal component is mirrored), 'elastic' (impulses by mass) or 'none' (spheres
+        pass through each other, and a pair event is the onset of touching)
     restitution : of elastic pair hits, 0 to 1; walls give everything back
     record : keep the events, for `events` and `take_events`
     search : 'cells', 'lists', or None to choose by packing
+
+    Raises
+    ------
+    InputError
+        If an array has a wrong shape or value, or spheres like these cannot be flown as asked.
     """
+
+    COUNTERS: ClassVar[tuple[str, ...]] = (
+        "pair_hits",
+        "box_hits",
+        "predictions",
+        "pair_tests",
+        "stale_events",
+        "cell_crossings",
+        "list_renewals",
+        "guarded_hits",
+        "stalled_events",
+    )
 
     def __init__(
         self,
@@ -45,6 +62,7 @@ class Simulation:
         half_box: ArrayLike,
         response: str = "reflect",
         restitution: float = 1.0,
+        *,
         record: bool = False,
         search: str | None = None,
     ) -> None:
@@ -54,10 +72,10 @@ class Simulation:
         if not 0.0 <= restitution <= 1.0:
             raise InputError(f"restitution must lie between 0 and 1, not {restitution:g}")
         search = search or choose_search(start, response)
-        if search not in SEARCHES or (search == "lists" and cells.size_classes(start.radii).max(initial=0) > 0):
+        if search not in SEARCHES or (search == "lists" and size_classes(start.radii).max(initial=0) > 0):
             raise InputError(f'search "{search}" is not possible for these spheres')
         self._chunks: list[NDArray[np.void]] = []
-        self._world = prepare(start, response, float(restitution), record, search)
+        self._world = prepare(start, make_rules(start, response, float(restitution), search), record)
         self._start = start
         self._start_virial = self._momentum_by_position(start.positions)
         self.time = 0.0
@@ -71,15 +89,15 @@ class Simulation:
     def advance(self, until: float, max_events: int | None = None) -> bool:
         """Fly to `until` (s); what is due at that very time still happens. False if `max_events` hits came first."""
         budget = 2**62 if max_events is None else self.counters["events"] + max_events
-        while (reason := self._fly(float(until), budget)) in (FULL, CROWDED, UNTIDY):
-            if reason == FULL:
+        while (reason := self._fly(float(until), budget)) in (Stop.FULL, Stop.NO_ROOM, Stop.REORDER):
+            if reason == Stop.FULL:
                 self._chunks.append(self._drain())
-            elif reason == CROWDED:
+            elif reason == Stop.NO_ROOM:
                 self._make_room()
             else:
-                tidy(self._world)
+                reorder(self._world)
                 populate(self._world, True)
-        if reason == SPENT:
+        if reason == Stop.SPENT:
             self.time = self._last_event_time
             return False
         self.time = max(self.time, until)
@@ -91,7 +109,7 @@ class Simulation:
             raise ValueError(f"t = {time!r} s is past: the last event was at {self._last_event_time!r} s")
         if time > self.time:
             self.advance(time)
-        clock = self._world.tally.clock[0]
+        clock = self._world.totals.clock[0]
         now = float((time - clock["epoch"]) - clock["epoch_rest"])
         return labelled(self._world, positions_at(self._world, now))
 
@@ -124,15 +142,15 @@ class Simulation:
     @property
     def counters(self) -> dict[str, int]:
         """How often what happened; `events` are pair and box hits only."""
-        counts = self._world.tally.counts[0]
+        counts = self._world.totals.counts[0]
         return {"events": int(counts["pair_hits"] + counts["box_hits"])} | {
-            name: int(counts[name]) for name in counts.dtype.names if name not in INTERNAL
+            name: int(counts[name]) for name in self.COUNTERS
         }
 
     @property
     def search(self) -> str:
         """Where neighbours come from: 'cells' or 'lists'."""
-        return next(name for name, method in SEARCHES.items() if method == self._world.rules.method)
+        return next(name for name, code in SEARCHES.items() if code == self._world.rules.neighbours)
 
     # -- physics -----------------------------------------------------------------------------------------------------
 
@@ -149,7 +167,7 @@ class Simulation:
     @property
     def wall_impulses(self) -> Floats:
         """(6,) impulses given to x-, x+, y-, y+, z-, z+ since the start, kg m/s."""
-        impulses: Floats = self._world.tally.walls["total"].copy()
+        impulses: Floats = self._world.totals.wall_impulses["total"].copy()
         return impulses
 
     @property
@@ -183,43 +201,37 @@ class Simulation:
 
     @property
     def _last_event_time(self) -> float:
-        clock = self._world.tally.clock[0]
+        clock = self._world.totals.clock[0]
         return float(clock["epoch"] + (clock["epoch_rest"] + clock["now"]))
 
     def _sum(self, name: str) -> float:
-        return float(self._world.tally.sums[name]["total"][0])
+        return float(self._world.totals.sums[name]["total"][0])
 
     def _momentum_by_position(self, positions: Floats) -> float:
         return float((self._start.masses * (positions * self.velocities).sum(axis=1)).sum())
 
     def _drain(self) -> NDArray[np.void]:
-        counts = self._world.tally.counts[0]
-        chunk: NDArray[np.void] = self._world.journal[: counts["recorded"]].copy()
+        counts = self._world.totals.counts[0]
+        chunk: NDArray[np.void] = self._world.log[: counts["recorded"]].copy()
         counts["recorded"] = 0
         return chunk
 
-    def _fly(self, until: float, budget: int) -> int:
+    def _fly(self, until: float, budget: int) -> Stop:
         return fly(self._world, until, budget)
 
     def _make_room(self) -> None:
-        """A crowd too thick for neighbour lists (spheres on top of each other): go on with cells from this moment."""
+        """Go on with cells from this moment: more spheres are on top of each other than a neighbour list holds."""
         world = self._world
-        now = float(world.tally.clock["now"][0])
+        now = float(world.totals.clock["now"][0])
         motions = world.spheres.motions
         motions["position"] = positions_at(world, now)
         motions["time"] = now
-        leaves = len(world.agenda.times) // 2
-        world.spheres.schedule["kind"] = FRESH
-        world.agenda.times[leaves : leaves + len(self)] = now
+        leaves = len(world.queue.times) // 2
+        world.spheres.schedule["kind"] = Event.UNSCHEDULED
+        world.queue.times[leaves : leaves + len(self)] = now
         self._world = world._replace(
-            cells=cells.build(self._start.half_box, self._start.radii, 0.0),
-            lists=lists(motions, CELLS),
-            rules=world.rules._replace(method=CELLS, skin=0.0),
+            cells=empty_grids(self._start.half_box, self._start.radii, 0.0),
+            lists=empty_lists(motions, NeighbourSearch.CELLS),
+            rules=world.rules._replace(neighbours=NeighbourSearch.CELLS, skin=0.0),
         )
         populate(self._world, False)
-
-
-def warm_up() -> None:
-    """Compile, or load from disk, everything a run needs."""
-    simulation = Simulation(np.zeros((1, 3)), np.zeros((1, 3)), [0.5], [1.0], np.ones(3))
-    simulation.advance(0.0)

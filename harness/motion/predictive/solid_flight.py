@@ -1,195 +1,174 @@
-"""The loop for bodies of any shape: bounding spheres open windows, and what happens inside is searched when due.
+"""The event loop of bodies of any shape: a contact is searched for while their bounding spheres can touch.
 
 It is the loop of spheres with one kind of event more, the search. A body holds all its windows, not the earliest one
-alone, as a search that has been paid for should not be asked for again. The loop itself is a strict kernel, since those
-of the narrow phase, which it calls, are compiled in its image: they need memory of their own, and exact rounding.
+alone, so that no search is done twice. The loop itself is a strict kernel, as those of the narrow phase, which it
+calls, are compiled as it is: they need memory of their own, and exact rounding.
 """
 
 from __future__ import annotations
 
 from math import inf
-from typing import NamedTuple
 
 from harness.kernel import kernel, step
-from harness.motion.predictive import tournament, windows
-from harness.motion.predictive.burst import patience
-from harness.motion.predictive.cells import ALL, AROUND, Layer, insert, next_face, remove
-from harness.motion.predictive.clock import catch_up, relative
-from harness.motion.predictive.clock import shift as shift_spheres
-from harness.motion.predictive.flight import CROWDED, FULL, REACHED, SPENT
-from harness.motion.predictive.hits import begin_to_touch, hit_pair, reach_plane, turn_back
-from harness.motion.predictive.narrow import search_pair, search_wall
+from harness.motion.predictive.burst import cooldown
+from harness.motion.predictive.candidates import gather_candidates
+from harness.motion.predictive.cells import ALL, AROUND, cross, next_face
+from harness.motion.predictive.clock import advance, relative, shift_times
+from harness.motion.predictive.codes import Event, Phase, ResponseCode, Stop, Task
+from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
+from harness.motion.predictive.hits import advance_to_plane, hit_pair, note_onset, reflect_from_wall
+from harness.motion.predictive.narrow_search import search_pair, search_wall
 from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
-from harness.motion.predictive.state import CROSSING, FRESH, NONE, NOTHING, PAIR, RENEWAL, SEARCH, WALL
-from harness.motion.predictive.surroundings import gather
-from harness.motion.predictive.windows import APART, DUE, NEAR, NOBODY, TOUCHING, UNSURE, find, holds, next_due
+from harness.motion.predictive.state import NOBODY
+from harness.motion.predictive.windows import close, close_all, find, next_due, open_on, shift_windows, valid
 from harness.narrowphase.spheres import passage, time_to_touch
-
-# What a body must do after an event: look at all around it anew, look only for whom it does not know yet, or neither.
-ANEW, MORE, SAME = range(3)
-
-
-class Aftermath(NamedTuple):
-    """What is to be done after an event.
-
-    task : ANEW, MORE or SAME
-    other : the other body that must do so, or `NOBODY`
-    layer : the cells that are new to those who look
-    """
-
-    task: int
-    other: int
-    layer: Layer
 
 
 @kernel
-def fly_solids(solid: SolidWorld, until: float, budget: int) -> int:
+def fly_solids(solid: SolidWorld, until: float, budget: int) -> Stop:
     """Let everything happen that is due up to and including `until` (s), or until `budget` hits are answered in all."""
     world = solid.world
-    agenda, counts, clock = world.agenda, world.tally.counts[0], world.tally.clock[0]
+    queue, schedule, clock = world.queue, world.spheres.schedule, world.totals.clock[0]
     limit = relative(clock, until)
     while True:
-        k = int(agenda.winners[1])
-        now = agenda.times[1]
-        if not now <= limit or now == inf:
-            return REACHED
-        if counts.pair_hits + counts.box_hits >= budget:
-            return SPENT
-        if solid.windows.free[0].count < 2 * world.spheres.motions.size:
-            return CROWDED
-        if counts.since_rebasing >= world.rules.span and now > clock.now:
-            windows.shift(solid.windows, clock.now)
-            shift_spheres(world)
+        stop = reason_to_stop(world, limit, budget)
+        if stop == Stop.REBASE:
+            shift_windows(solid.windows, clock.now)
+            shift_times(world)
             turn_to_base(solid.body, clock)
             limit = relative(clock, until)
             continue
-        if counts.recorded == world.journal.size and counts.recorded > 0:
-            return FULL
-        clock.now = now
-        counts.since_rebasing += 1
-        after = Aftermath(SAME, NOBODY, AROUND)
-        if world.spheres.schedule[k].kind == SEARCH:
+        if stop != Stop.NOT:
+            return stop
+        if solid.windows.free[0].count < 2 * schedule.size:
+            return Stop.NO_ROOM
+        k = int(queue.winners[1])
+        now = queue.times[1]
+        begin(world, now)
+        after = FollowUp(Task.KEEP, NOBODY, AROUND)
+        if schedule[k].kind == Event.SEARCH:
             search(solid, k, now)
         else:
-            after = happen(solid, k, now)
+            after = process_event(solid, k, now)
         for turn in range(2):
             who = k if turn == 0 else after.other
             if who >= 0:
-                if after.task != SAME:
-                    look(solid, who, now, after.task == ANEW, after.layer)
+                if after.task != Task.KEEP:
+                    predict(solid, who, now, after)
                 schedule_next(solid, who, now)
-                tournament.replay(agenda, world.spheres.schedule, who)
 
 
 @kernel
 def search(solid: SolidWorld, k: int, now: float) -> None:
-    """Carry out the search that body k's event is."""
+    """Carry out the search that body k holds."""
     held = int(solid.windows.held[k])
     if held < 0:
         search_wall(solid, k, -1 - held, now)
-    elif holds(solid.windows, solid.world.spheres.schedule, held):
+    elif valid(solid.windows, solid.world.spheres.schedule, held):
         search_pair(solid, k, held, now)
     else:
-        windows.remove(solid.windows, k, held)
-        solid.world.tally.counts[0].stale_events += 1
+        close(solid.windows, k, held)
+        solid.world.totals.counts[0].stale_events += 1
 
 
 @step
-def happen(solid: SolidWorld, k: int, now: float) -> Aftermath:
-    """Carry out body k's event, other than a search."""
+def process_event(solid: SolidWorld, k: int, now: float) -> FollowUp:
+    """Carry out the event that body k holds, other than a search."""
     world = solid.world
-    schedule, counts = world.spheres.schedule, world.tally.counts[0]
-    kind = int(schedule[k].kind)
-    task = SAME
+    schedule, counts = world.spheres.schedule, world.totals.counts[0]
+    own = schedule[k]
+    task = Task.KEEP
     other = NOBODY
-    axis = ALL
-    step = 0
-    if kind == PAIR:
+    layer = AROUND
+    if own.kind == Event.PAIR:
         held = int(solid.windows.held[k])
-        if not holds(solid.windows, schedule, held):
-            windows.remove(solid.windows, k, held)
+        if not valid(solid.windows, schedule, held):
+            close(solid.windows, k, held)
             counts.stale_events += 1
-        elif meet(solid, k, held, now):
-            task = ANEW
-            other = int(solid.windows.pool[held].other)
-    elif kind >= WALL and kind < CROSSING:
-        if meet_wall(solid, k, kind - WALL, now):
-            task = ANEW
-    elif kind >= CROSSING and kind < RENEWAL:
-        axis = (kind - CROSSING) // 2
-        step = 2 * ((kind - CROSSING) % 2) - 1
-        remove(world.cells, schedule, k)
-        schedule[k].cell[axis] += step
-        insert(world.cells, schedule, k)
+        elif answer_pair(solid, k, held, now):
+            task = Task.PREDICT
+            other = int(own.partner)
+    elif own.kind == Event.WALL:
+        if answer_wall(solid, k, own.face, now):
+            task = Task.PREDICT
+    elif own.kind == Event.CROSSING:
+        task = Task.EXTEND
+        layer = cross(world.cells, schedule, k)
         counts.cell_crossings += 1
-        task = MORE
     else:
-        task = ANEW if kind == FRESH else MORE
-    return Aftermath(task, other, Layer(axis, step))
+        task = Task.PREDICT if own.kind == Event.UNSCHEDULED else Task.EXTEND
+    return FollowUp(task, other, layer)
 
 
 @step
-def meet(solid: SolidWorld, k: int, w: int, now: float) -> bool:
-    """Body k and the other of its window w touch. Returns whether they answer."""
+def answer_pair(solid: SolidWorld, k: int, w: int, now: float) -> bool:
+    """Body k and the other of its window w touch. Returns whether their velocities change."""
     world, window = solid.world, solid.windows.pool[w]
     p = int(window.other)
-    wait = max(patience(world, k, now), patience(world, p, now))
+    wait = max(cooldown(world, k, now), cooldown(world, p, now))
     if wait > 0.0:
         window.time = now + wait
-        world.tally.counts[0].stalled_events += 1
+        world.totals.counts[0].stalled_events += 1
         return False
-    if world.rules.response == NONE:
-        begin_to_touch(world, k, p, now)
-        window.phase = TOUCHING
+    if world.rules.response == ResponseCode.NONE:
+        note_onset(world, k, p, now)
+        window.phase = Phase.TOUCHING
         return False
     if hit_pair(world, k, p, now):
         return True
-    windows.remove(solid.windows, k, w)
+    close(solid.windows, k, w)
     return False
 
 
 @step
-def meet_wall(solid: SolidWorld, k: int, face: int, now: float) -> bool:
-    """Body k touches a wall, or its sphere does where only that is reflected. Returns whether it turns back."""
+def answer_wall(solid: SolidWorld, k: int, face: int, now: float) -> bool:
+    """Body k touches a wall, or its sphere does where only that is reflected. Returns whether its velocity changes."""
     world = solid.world
     axis = face // 2
-    wait = patience(world, k, now)
+    wait = cooldown(world, k, now)
     if wait > 0.0:
         solid.windows.walls[k, axis].time = now + wait
-        world.tally.counts[0].stalled_events += 1
+        world.totals.counts[0].stalled_events += 1
         return False
-    if world.rules.response == NONE:
-        reach_plane(world, k, face, world.rules.half_box[axis] - 0.5 * solid.body.sizes[k], now)
+    if world.rules.response == ResponseCode.NONE:
+        advance_to_plane(world, k, face, world.rules.half_box[axis] - 0.5 * solid.body.sizes[k], now)
     else:
-        catch_up(world, k, now)
-    turn_back(world, k, face, now)
+        advance(world, k, now)
+    reflect_from_wall(world, k, face, now)
     return True
 
 
 @step
-def look(solid: SolidWorld, k: int, now: float, anew: bool, layer: Layer) -> None:
-    """Open body k's windows: on everybody around it, or on those it does not know yet."""
-    world = solid.world
-    known = int(solid.windows.heads[k])
+def predict(solid: SolidWorld, k: int, now: float, after: FollowUp) -> None:
+    """Open body k's windows: on everybody around it, or only on those who are new to it."""
+    world, windows = solid.world, solid.windows
+    anew = after.task == Task.PREDICT
+    known = int(windows.heads[k])
     if anew:
-        solid.windows.heads[k] = NOBODY
-        look_at_walls(solid, k, now)
-        world.tally.counts[0].predictions += 1
-    count = gather(world, k, now, layer)
-    world.tally.counts[0].pair_tests += count - (layer.axis == ALL)
+        windows.heads[k] = NOBODY
+        open_wall_windows(solid, k, now)
+        world.totals.counts[0].predictions += 1
+    count = gather_candidates(world, k, now, after.layer)
+    world.totals.counts[0].pair_tests += count - (after.layer.axis == ALL)
     for m in range(count):
         p = int(world.scratch.found[m])
         if p != k:
             open_window(solid, k, p, now, anew, known)
     if anew:
-        windows.close_all(solid.windows, known)
+        close_all(windows, known)
 
 
 @step
 def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known: int) -> None:
-    """Open body k's window on body p, if their spheres meet and neither holds one on the other that stands."""
-    world, open_ = solid.world, solid.windows
+    """Open body k's window on body p, if their spheres will touch and neither holds a valid one on the other.
+
+    Parameters
+    ----------
+    anew : whether body k's windows from before its last hit are closed after this
+    known : the first of the windows that it has had so far
+    """
+    world, windows = solid.world, solid.windows
     schedule = world.spheres.schedule
     own, other = world.spheres.motions[k], world.spheres.motions[p]
     flown, flown_p = now - own.time, now - other.time
@@ -202,53 +181,57 @@ def open_window(solid: SolidWorld, k: int, p: int, now: float, anew: bool, known
     reach = own.radius + other.radius
     inside = x * x + y * y + z * z <= reach * reach
     wait = time_to_touch((x, y, z), (u, v, w), reach)
-    if world.rules.response == NONE and inside:
+    if world.rules.response == ResponseCode.NONE and inside:
         wait = 0.0
     if wait == inf:
         return
-    theirs = find(open_, open_.heads[p], k)
-    if holds(open_, schedule, theirs) or (not anew and holds(open_, schedule, find(open_, known, p))):
+    theirs = find(windows, windows.heads[p], k)
+    if valid(windows, schedule, theirs) or (not anew and valid(windows, schedule, find(windows, known, p))):
         return
-    before = find(open_, known, p) if anew else NOBODY
+    before = find(windows, known, p) if anew else NOBODY
     if before < 0:
         before = theirs
     approach, speed = x * u + y * v + z * w, u * u + v * v + w * w
-    phase = APART
-    if world.rules.response == NONE:
+    phase = Phase.APART
+    if world.rules.response == ResponseCode.NONE:
+        # the window lasts as long as the spheres overlap
         end = now + passage((x, y, z), (u, v, w), reach).leave
         if inside and not were_apart(solid, k, p, before, theirs):
-            phase = UNSURE
+            phase = Phase.UNSURE
     else:
         end = now - approach / speed
-    new = windows.add(open_, schedule, k, p)
-    open_.pool[new].time = now + wait
-    open_.pool[new].end = end
-    open_.pool[new].phase = phase
+    new = open_on(windows, schedule, k, p)
+    windows.pool[new].time = now + wait
+    windows.pool[new].end = end
+    windows.pool[new].phase = phase
     if before >= 0:
-        open_.starts[new] = open_.starts[before]  # no longer valid, but a good place to start from
+        windows.warm_starts[new] = windows.warm_starts[before]
 
 
 @step
 def were_apart(solid: SolidWorld, k: int, p: int, before: int, theirs: int) -> bool:
-    """Whether the last window of two bodies stood until body k's last hit, and still waited for their contact."""
+    """Whether the last window of two bodies was valid until body k's last hit, and still waited for their contact.
+
+    It is body p's if it is the one that is called `theirs`.
+    """
     if before < 0:
         return False
     schedule, last = solid.world.spheres.schedule, solid.windows.pool[before]
-    stood = last.other_hits == (schedule[k].hits - 1 if before == theirs else schedule[p].hits)
-    return bool(stood and last.phase in (APART, NEAR, DUE))
+    was_valid = last.other_hits == (schedule[k].hits - 1 if before == theirs else schedule[p].hits)
+    return bool(was_valid and last.phase in (Phase.APART, Phase.NEAR, Phase.DUE))
 
 
 @step
-def look_at_walls(solid: SolidWorld, k: int, now: float) -> None:
-    """When body k's sphere meets the walls ahead of it."""
+def open_wall_windows(solid: SolidWorld, k: int, now: float) -> None:
+    """When body k's sphere touches the walls ahead of it."""
     world, motion = solid.world, solid.world.spheres.motions[k]
     for axis in range(3):
         velocity = motion.velocity[axis]
         radius = 0.5 * solid.body.sizes[k]
-        phase = DUE
-        if world.rules.response != NONE:
+        phase = Phase.DUE
+        if world.rules.response != ResponseCode.NONE:
             radius *= 1.0 + 2.0 * solid.body.tolerance
-            phase = APART
+            phase = Phase.APART
         plane = world.rules.half_box[axis] - radius
         wait = time_to_plane((plane if velocity > 0.0 else -plane) - motion.position[axis], velocity)
         solid.windows.walls[k, axis].time = max(motion.time + wait, now)
@@ -257,11 +240,12 @@ def look_at_walls(solid: SolidWorld, k: int, now: float) -> None:
 
 @step
 def schedule_next(solid: SolidWorld, k: int, now: float) -> None:
-    """The earliest of body k's windows, walls, cell faces and renewal goes to its leaf."""
-    world, open_, cells = solid.world, solid.windows, solid.world.cells
+    """Schedule the earliest of body k's windows, walls, cell faces and renewal."""
+    world, windows, cells = solid.world, solid.windows, solid.world.cells
     motion, own = world.spheres.motions[k], world.spheres.schedule[k]
     due = inf
-    kind = NOTHING
+    kind = Event.NOTHING
+    met = 0
     held = NOBODY
     grid = cells.grids[own.size_class]
     for axis in range(3):
@@ -271,28 +255,30 @@ def schedule_next(solid: SolidWorld, k: int, now: float) -> None:
         time = motion.time + time_to_plane(face, v)
         if time < due:
             due = time
-            kind = CROSSING + 2 * axis + up
+            kind = Event.CROSSING
+            met = 2 * axis + up
     if cells.grids.size > 1 and cells.renewals[k] < due:
         due = cells.renewals[k]
-        kind = RENEWAL
+        kind = Event.RENEWAL
     for axis in range(3):
-        wall = open_.walls[k, axis]
-        time = wall.time
-        face_kind = WALL + 2 * axis + (1 if motion.velocity[axis] > 0.0 else 0) if wall.phase == DUE else SEARCH
-        if time < due or (time == due and time < inf and face_kind < kind):
+        time = windows.walls[k, axis].time
+        wall_kind = Event.WALL if windows.walls[k, axis].phase == Phase.DUE else Event.SEARCH
+        if time < due or (time == due and time < inf and wall_kind < kind):
             due = time
-            kind = face_kind
+            kind = wall_kind
+            met = 2 * axis + (1 if motion.velocity[axis] > 0.0 else 0)
             held = -1 - axis
-    which = next_due(open_, world.spheres.schedule, k)
+    which = next_due(windows, world.spheres.schedule, k)
     if which >= 0:
-        time = open_.pool[which].time
-        pair_kind = PAIR if open_.pool[which].phase == DUE else SEARCH
+        time = windows.pool[which].time
+        pair_kind = Event.PAIR if windows.pool[which].phase == Phase.DUE else Event.SEARCH
         if time < due or (time == due and pair_kind < kind):
             due = time
             kind = pair_kind
             held = which
     own.kind = kind
-    if kind == PAIR:
-        own.partner = open_.pool[held].other
-    open_.held[k] = held
-    world.agenda.times[world.agenda.times.size // 2 + k] = max(due, now)
+    own.face = met
+    if kind == Event.PAIR:
+        own.partner = windows.pool[held].other
+    windows.held[k] = held
+    enqueue(world, k, max(due, now))

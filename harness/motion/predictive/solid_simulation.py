@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.motion.predictive.codes import Stop
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_flight import fly_solids
 from harness.motion.predictive.solids import Form, SolidWorld, solids
-from harness.motion.predictive.windows import enlarged, windows
+from harness.motion.predictive.windows import empty_windows, enlarged
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
-# Counters of the narrow searches.
-SEARCHES = ("narrow_tests", "box_tests", "advancement_steps")
 # Windows that a body has room for at first.
 WINDOWS = 6
-# Hits in no time that make a body stall: fewer than of spheres, as each costs the searches of all that overlap.
-BURST = {"none": 30, "reflect": 1000, "elastic": 10_000}
+# Hits that a collision burst may have: fewer than of spheres, as each costs the searches of all that overlap.
+BURST_LIMIT = {"none": 30, "reflect": 1000, "elastic": 10_000}
 
 
 class SolidSimulation(Simulation):
@@ -31,6 +30,9 @@ class SolidSimulation(Simulation):
     tolerance : gap, relative to the mean size of two bodies, at which surfaces count as touching
     """
 
+    # narrow tests are searches of pairs, each of some steps
+    COUNTERS = (*Simulation.COUNTERS, "narrow_tests", "box_tests", "advancement_steps")
+
     def __init__(
         self,
         bodies: Bodies,
@@ -38,6 +40,7 @@ class SolidSimulation(Simulation):
         form: Form,
         response: str = "reflect",
         restitution: float = 1.0,
+        *,
         record: bool = False,
         tolerance: float = 1e-6,
     ) -> None:
@@ -51,23 +54,19 @@ class SolidSimulation(Simulation):
             box.half,
             response,
             restitution,
-            record,
+            record=record,
             search="cells",
         )
-        # The narrow search takes the time, not the memory: no need to keep neighbours together
-        self._world = self._world._replace(rules=self._world.rules._replace(tidying=0, burst=BURST[response]))
+        # The narrow search takes the time, not the memory: there is no need to keep neighbours together
+        self._world = self._world._replace(
+            rules=self._world.rules._replace(bases_per_order=0, burst_limit=BURST_LIMIT[response])
+        )
         order = self._world.spheres.schedule["label"]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64
-        self._solid = SolidWorld(self._world, body, windows(len(bodies), room))
+        self._solid = SolidWorld(self._world, body, empty_windows(len(bodies), room))
 
-    @property
-    def counters(self) -> dict[str, int]:
-        """How often what happened; `narrow_tests` are searches of pairs, each of some steps."""
-        counts = self._world.tally.counts[0]
-        return super().counters | {name: int(counts[name]) for name in SEARCHES}
-
-    def _fly(self, until: float, budget: int) -> int:
+    def _fly(self, until: float, budget: int) -> Stop:
         return fly_solids(self._solid, until, budget)
 
     def _make_room(self) -> None:

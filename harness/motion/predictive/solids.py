@@ -1,4 +1,4 @@
-"""What the scheduler knows of shapes: one hull, in the sizes and turns of the bodies.
+"""Bodies of one shape, in their sizes and orientations, as the event loop needs them.
 
 Orientations are exact functions of absolute time, exp(w t) q0. Like positions they are counted from a base of time
 that follows the present, and at every new base they are made anew from q0 with the angle in twice the digits: at 10^9 s
@@ -7,13 +7,14 @@ an angle of |w| t, rounded, would be off by 10^-7.
 
 from __future__ import annotations
 
-from math import cos, pi, sin, sqrt
+from math import cos, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from harness.arrays import Floats, Ints
-from harness.kernel import kernel, step, strict_step
+from harness.kernel import kernel, step
+from harness.motion.predictive.double_double import DOUBLE_DOUBLE, angle_after, norm
 from harness.motion.predictive.state import Record, Records, World
 from harness.motion.predictive.windows import Windows
 from harness.narrowphase.free_flight import Motion
@@ -26,13 +27,6 @@ from harness.scene.bodies import Bodies
 from harness.scene.scene import Scene
 
 Quaternion = tuple[float, float, float, float]
-
-# 2 pi in twice the digits.
-TURN, TURN_REST = 2.0 * pi, 2.4492935982947064e-16
-# A number in twice the digits, high + low.
-LONG = np.dtype([("high", np.float64), ("low", np.float64)], align=True)
-# Splits a number of 53 bits into two of 26 (Dekker).
-SPLIT = 134217729.0
 
 
 class Form:
@@ -68,12 +62,12 @@ class Solids(NamedTuple):
 
     Attributes
     ----------
-    shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree is a stump
+    shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree holds one triangle only
     concave : whether the surface is to be searched where hulls touch
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
     spins : (n, 3) rad/s, in the world
-    rates : (n,) of LONG, rad/s, |spin|
+    rates : (n,) of DOUBLE_DOUBLE, rad/s, |spin|
     start : (n, 4) orientations at time 0, w x y z
     turns : (n, 4) orientations at the base of time
     tolerance : of the mean size of two bodies: gaps below are contact
@@ -111,7 +105,7 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     tolerance : as in `Solids`
     """
     sizes, spins, start = bodies.sizes[order], bodies.spins[order], bodies.quaternions[order]
-    reaches, rates = np.empty(len(sizes)), np.empty(len(sizes), dtype=LONG)
+    reaches, rates = np.empty(len(sizes)), np.empty(len(sizes), dtype=DOUBLE_DOUBLE)
     measure(form.shape.hull.vertices, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
     turns = start.copy()
@@ -123,7 +117,7 @@ def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reach
     """Fill in reaches and rates."""
     for k in range(len(sizes)):
         x, y, z = spins[k]
-        high, low = long_norm(x, y, z)
+        high, low = norm(x, y, z)
         rates[k].high, rates[k].low = high, low
         reaches[k] = 0.5 * sizes[k]
         if high > 0.0:
@@ -170,7 +164,7 @@ def turn_to_base(body: Solids, clock: Record) -> None:
     """Orientations at a new base of time, from those at time 0."""
     for k in range(body.sizes.size):
         rate = body.rates[k]
-        angle = long_angle(rate.high, rate.low, clock.epoch, clock.epoch_rest)
+        angle = angle_after(rate.high, rate.low, clock.epoch, clock.epoch_rest)
         spin = (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2])
         start = (body.start[k, 0], body.start[k, 1], body.start[k, 2], body.start[k, 3])
         w, x, y, z = turned_by(spin, rate.high, angle, start)
@@ -190,49 +184,3 @@ def turned_by(spin: Vector, rate: float, angle: float, q: Quaternion) -> Quatern
         c * y0 - x * z0 + y * w0 + z * x0,
         c * z0 + x * y0 - y * x0 + z * w0,
     )
-
-
-@strict_step
-def long_angle(rate: float, rate_rest: float, time: float, time_rest: float) -> float:
-    """(rate + rest) (time + rest), less whole turns, twice over (a quaternion comes back after two)."""
-    turns = np.rint(rate * time / (2.0 * TURN))
-    angle, rest = product(rate, time)
-    whole, whole_rest = product(turns, 2.0 * TURN)
-    rest += rate * time_rest + rate_rest * time - whole_rest - turns * (2.0 * TURN_REST)
-    # both are whole multiples of the same small unit and near each other, so that their difference is exact
-    return float((angle - whole) + rest)
-
-
-@strict_step
-def long_norm(x: float, y: float, z: float) -> tuple[float, float]:
-    """|(x, y, z)| in twice the digits."""
-    high = sqrt(x * x + y * y + z * z)
-    if high == 0.0:
-        return 0.0, 0.0
-    a, a_rest = product(x, x)
-    b, b_rest = product(y, y)
-    c, c_rest = product(z, z)
-    d, d_rest = product(high, high)
-    total, total_rest = longer(a, b)
-    total, rest = longer(total, c)
-    return high, ((total - d) + (rest + total_rest + a_rest + b_rest + c_rest - d_rest)) / (2.0 * high)
-
-
-@strict_step
-def longer(a: float, b: float) -> tuple[float, float]:
-    """a + b, and what rounding took of it (Knuth)."""
-    total = a + b
-    part = total - a
-    return total, (a - (total - part)) + (b - part)
-
-
-@strict_step
-def product(a: float, b: float) -> tuple[float, float]:
-    """a b, and what rounding took of it (Dekker)."""
-    high = a * b
-    p = SPLIT * a
-    a1 = p - (p - a)
-    p = SPLIT * b
-    b1 = p - (p - b)
-    a2, b2 = a - a1, b - b1
-    return high, ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2

@@ -1,4 +1,4 @@
-"""What the scheduler knows, as arrays of records: one motion and one scheduled event a sphere, the cells, the tallies.
+"""The state of a run, as arrays of records: a motion and a scheduled event a sphere, the queue, the cells, the totals.
 
 The named tuples are handed to the compiled loop whole; everything in them changes in place.
 """
@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.motion.predictive.codes import NeighbourSearch, ResponseCode
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Indices = NDArray[np.uint32]  # unsigned: the compiled code then need not ask whether an index counts from the end
@@ -18,6 +20,7 @@ Records = Any  # an array of one of the types below; mypy knows no fields
 Record = Any  # one of its elements
 
 LINE = 64  # bytes of a cache line
+NOBODY = -1  # in place of a body, or of a window
 
 # A sphere's motion: 64 bytes, one cache line.
 MOTION = np.dtype(
@@ -30,7 +33,7 @@ MOTION = np.dtype(
     align=True,
 )
 
-# What the scheduler knows of a sphere: 64 bytes more.
+# What else the event loop knows of a sphere: 64 bytes more.
 SCHEDULE = np.dtype(
     [
         ("pair_time", np.float64),  # s, of the earliest pair candidate; it outlives crossings
@@ -38,10 +41,11 @@ SCHEDULE = np.dtype(
         ("mass", np.float64),  # kg
         ("hits", np.int32),  # how often the velocity changed: an event made for another count is stale
         ("partner", np.int32),  # the pair candidate, -1: none
-        ("partner_hits", np.int32),  # its hits when it was looked at
-        ("kind", np.int32),  # of the scheduled event
+        ("partner_hits", np.int32),  # its hits when the pair was predicted
+        ("kind", np.int16),  # of the scheduled event, an `Event`
+        ("face", np.int16),  # that it is about, of the box or of the cell: x-, x+, y-, y+, z-, z+
         ("label", np.int32),  # the caller's numbering, which breaks ties
-        ("burst", np.int32),  # hits in no time
+        ("burst_hits", np.int32),  # of the present collision burst
         ("cell", np.int32, 3),  # along x, y, z
         ("size_class", np.int32),
     ],
@@ -56,7 +60,7 @@ GRID = np.dtype(
         ("low", np.float64, 3),  # m, where it begins
         ("side", np.float64, 3),  # m, of a cell
         ("largest", np.float64),  # m, radius
-        ("margin", np.float64),  # m, how far a sphere flies before it looks at finer grids again
+        ("margin", np.float64),  # m, how far a sphere flies before it searches finer grids again
     ],
     align=True,
 )
@@ -80,7 +84,7 @@ COUNTS = np.dtype(
             "advancement_steps",
             "rebasings",  # of time
             "since_rebasing",  # events, searches and crossings included
-            "recorded",  # events in the journal
+            "recorded",  # events in the log
         )
     ],
     align=True,
@@ -103,15 +107,15 @@ SUMS = np.dtype(
 # Absolute time is (epoch + epoch_rest) + now.
 CLOCK = np.dtype([("epoch", np.float64), ("epoch_rest", np.float64), ("now", np.float64)], align=True)
 
-# The onset that was noted last (response none).
+# The onset of touching that was recorded last (response none).
 ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align=True)
 
 # A recorded event: j is -1 at a wall, wall is -1 between a pair.
 EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
 PAIR_EVENT, WALL_EVENT = 0, 1
 
-# Candidates solved at a time, as columns. Their number is a constant, so that the compiler sees that the columns do not
-# overlap.
+# Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that columns do
+# not overlap.
 LANES = 64
 CANDIDATES = np.dtype(
     [
@@ -121,17 +125,9 @@ CANDIDATES = np.dtype(
     align=True,
 )
 
-# Who is near a sphere: a list of one cache line or, if it is long, two.
+# The neighbours of a sphere: most lists fill one cache line, and none more than two.
 CAPACITY = 31
 NEIGHBOURS = np.dtype([("count", np.uint32), ("who", np.uint32, CAPACITY)], align=True)
-
-# What a sphere's scheduled event is. Walls and crossings add 2 * axis + (1 if moving up the axis). A search is for the
-# contact of a shape inside its bounding sphere.
-SEARCH, FRESH, PAIR, WALL, CROSSING, RENEWAL, NOTHING = -1, 0, 1, 2, 8, 14, 15
-
-# Where neighbours come from, and what a touch does.
-CELLS, LISTS = 0, 1
-NONE, REFLECT, ELASTIC = 0, 1, 2
 
 
 class Spheres(NamedTuple):
@@ -139,19 +135,19 @@ class Spheres(NamedTuple):
 
     motions : (n,) of MOTION
     schedule : (n,) of SCHEDULE
-    contacts : (n,) time of the last pair hit
+    last_contacts : (n,) s, time of the last pair hit
     """
 
     motions: Records
     schedule: Records
-    contacts: Floats
+    last_contacts: Floats
 
 
-class Agenda(NamedTuple):
-    """The event each sphere holds, under a tournament tree: leaf n_leaves + k is sphere k, node 1 the next event."""
+class EventQueue(NamedTuple):
+    """A tournament tree over the events of the spheres: leaf n_leaves + k is sphere k's, node 1 the next of all."""
 
     times: Floats  # (2 n_leaves,) never negative, so that their bits, read as integers, are in the same order
-    order: Longs  # (2 n_leaves,) those bits, in the same memory: the tree climbs 1.5 times as fast on integers
+    time_bits: Longs  # (2 n_leaves,) those bits, in the same memory: the tree climbs 1.5 times as fast on integers
     winners: Ints  # (2 n_leaves,)
 
 
@@ -161,41 +157,41 @@ class Cells(NamedTuple):
     heads: Indices  # (cells of all grids,) first sphere, n = empty
     following: Indices  # (n + 1,) the next sphere in the same cell
     grids: Records  # (grids,) of GRID
-    renewals: Floats  # (n,) when a sphere has flown its margin and must look at finer grids again
+    renewals: Floats  # (n,) s, when a sphere has flown its margin and must search finer grids again
 
 
 class Lists(NamedTuple):
     """Neighbours within touching distance + skin, of spheres that moved at most skin / 2 from their anchors."""
 
-    anchors: Floats  # (n, 3)
+    anchors: Floats  # (n, 3) m
     members: Records  # (n,) of NEIGHBOURS
 
 
 class Rules(NamedTuple):
     """What stays the same during a run."""
 
-    half_box: Floats  # (3,)
-    method: int
-    response: int
+    half_box: Floats  # (3,) m
+    neighbours: NeighbourSearch
+    response: ResponseCode
     restitution: float
-    skin: float
+    skin: float  # m: how much farther than touching neighbours of a list may be
     contact_time: float  # s: a pair hit this soon after another is answered elastically
-    blink: float  # s: pair hits of a sphere that follow each other this soon come in no time
-    pause: float  # s: what a stalled sphere waits
-    burst: int  # hits in no time that a sphere may have
+    burst_window: float  # s: a pair hit of a sphere this soon after another belongs to one collision burst
+    cooldown: float  # s: what a sphere waits before a hit beyond the limit
+    burst_limit: int  # hits of one burst that a sphere may have
     touching: float  # m: gaps below this are contact (response none)
-    span: int  # events from one re-basing of time to the next
-    crowded: bool  # too many for the cache
+    events_per_base: int  # from one re-basing of time to the next
     depth: int  # levels of the tournament tree
-    tidying: int  # re-basings from one re-ordering of memory to the next, 0 = never
+    bases_per_order: int  # re-basings of time from one re-ordering of memory to the next, 0 = never
+    prefetching: bool  # the spheres are too many for the cache
 
 
-class Tally(NamedTuple):
-    """What has happened so far. All but the walls have one record."""
+class Totals(NamedTuple):
+    """What has happened so far. All but the wall impulses have one record."""
 
     counts: Records  # (1,) of COUNTS
     sums: Records  # (1,) of SUMS
-    walls: Records  # (6,) of SUM, kg m/s: impulses given to x-, x+, y-, y+, z-, z+
+    wall_impulses: Records  # (6,) of SUM, kg m/s, given to x-, x+, y-, y+, z-, z+
     clock: Records  # (1,) of CLOCK
     onset: Records  # (1,) of ONSET
 
@@ -211,12 +207,12 @@ class World(NamedTuple):
     """All of it."""
 
     spheres: Spheres
-    agenda: Agenda
+    queue: EventQueue
     cells: Cells
     lists: Lists
     rules: Rules
-    tally: Tally
-    journal: Records  # a chunk of recorded EVENTs; no room means no recording
+    totals: Totals
+    log: Records  # a chunk of recorded EVENTs; no room means no recording
     scratch: Scratch
 
 

@@ -1,8 +1,8 @@
 """Windows: from when to when two bodies can touch, as their bounding spheres tell, and what is known of them so far.
 
 A window is held by one of the two bodies, in a list; it is valid while the other's count of hits is the one noted in
-it (the holder drops all its windows when its own velocity changes). What a window waits for is first a search, due when
-the spheres meet, and then the hit that the search has found. Most windows are closed again before they are due, and
+it (the holder drops all its windows when its own velocity changes). A window waits first for a search, due when the
+spheres meet, and then for the hit that the search has found. Most windows are closed again before they are due, and
 cost no search.
 """
 
@@ -14,46 +14,46 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.kernel import step
-from harness.motion.predictive.state import Ints, Record, Records
-
-# What a window, or a body's way to a wall, waits for: a search for the contact of bodies that are apart; a closer one,
-# where their hulls are near each other; a search for the contact of bodies whose spheres overlap when they are first
-# looked at, so that they may be touching; a search for the end of a contact; that end; the hit that a search has found.
-APART, NEAR, UNSURE, TOUCHING, PARTING, DUE = range(6)
-
-NOBODY = -1
+from harness.motion.predictive.codes import Phase
+from harness.motion.predictive.state import NOBODY, Ints, Record, Records
 
 WINDOW = np.dtype(
     [
         ("time", np.float64),  # s, when the search or the hit is due
-        ("end", np.float64),  # s, after which the pair is silent
+        ("end", np.float64),  # s, after which no contact of the pair counts
         ("other", np.int32),  # the other body
         ("other_hits", np.int32),  # its hits when the window was opened
-        ("phase", np.int32),
+        ("phase", np.int32),  # a `Phase`
         ("next", np.int32),  # the next window of the same body, or the next free one
     ],
     align=True,
 )
 
-# Where the last search of a pair ended; -1: nowhere yet.
+# Where the last search of a pair ended, for the next one to start from; -1: there was none.
 WARM_START = np.dtype([("hulls", np.int64, 4), ("surfaces", np.int64, 2)], align=True)
 
-# A body's way to the wall ahead of it along an axis: s, when a search or a hit is due there.
-WALL_WINDOW = np.dtype([("time", np.float64), ("phase", np.int64)], align=True)
+# A body and the wall ahead of it along an axis.
+WALL_WINDOW = np.dtype(
+    [
+        ("time", np.float64),  # s, when the search or the hit is due
+        ("phase", np.int64),  # a `Phase`
+    ],
+    align=True,
+)
 
 # The windows that are not in use, as a list.
 FREE = np.dtype([("first", np.int64), ("count", np.int64)], align=True)
 
 
 class Windows(NamedTuple):
-    """Lists of windows, one a body, in a common pool; and each body's ways to the three walls ahead of it.
+    """Lists of windows, one a body, in a common pool; and for each body and axis, one on the wall ahead.
 
     Attributes
     ----------
     heads : (n,) first window of each body
-    held : (n,) the window that a body's scheduled event is about; -1 - axis for a way to a wall
+    held : (n,) the window that a body's scheduled event is about; -1 - axis for a wall
     pool : (m,) of WINDOW
-    starts : (m,) of WARM_START, one a window
+    warm_starts : (m,) of WARM_START, one a window
     free : (1,) of FREE
     walls : (n, 3) of WALL_WINDOW
     """
@@ -61,17 +61,17 @@ class Windows(NamedTuple):
     heads: Ints
     held: Ints
     pool: Records
-    starts: Records
+    warm_starts: Records
     free: Records
     walls: Records
 
 
-def windows(bodies: int, room: int) -> Windows:
+def empty_windows(bodies: int, room: int) -> Windows:
     """No windows yet, room for so many."""
     pool = np.zeros(room, dtype=WINDOW)
     pool["next"] = np.append(np.arange(1, room), NOBODY)
-    starts = np.zeros(room, dtype=WARM_START)
-    starts["hulls"], starts["surfaces"] = -1, -1
+    warm_starts = np.zeros(room, dtype=WARM_START)
+    warm_starts["hulls"], warm_starts["surfaces"] = -1, -1
     free = np.zeros(1, dtype=FREE)
     free["count"] = room
     walls = np.zeros((bodies, 3), dtype=WALL_WINDOW)
@@ -80,7 +80,7 @@ def windows(bodies: int, room: int) -> Windows:
         heads=np.full(bodies, NOBODY, dtype=np.int32),
         held=np.full(bodies, NOBODY, dtype=np.int32),
         pool=pool,
-        starts=starts,
+        warm_starts=warm_starts,
         free=free,
         walls=walls,
     )
@@ -89,9 +89,9 @@ def windows(bodies: int, room: int) -> Windows:
 def enlarged(full: Windows) -> Windows:
     """The same windows and as many free ones again."""
     room = len(full.pool)
-    larger = windows(len(full.heads), 2 * room)
+    larger = empty_windows(len(full.heads), 2 * room)
     larger.pool[:room] = full.pool
-    larger.starts[:room] = full.starts
+    larger.warm_starts[:room] = full.warm_starts
     larger.pool["next"][-1] = full.free["first"][0]
     larger.free["first"] = room
     larger.free["count"] = full.free["count"] + room
@@ -108,13 +108,13 @@ def find(windows: Windows, first: int, p: int) -> int:
 
 
 @step
-def holds(windows: Windows, schedule: Records, w: int) -> bool:
-    """Whether a window is there and stands: the other body still flies as it did."""
+def valid(windows: Windows, schedule: Records, w: int) -> bool:
+    """Whether a window is there and valid: the other body still flies as it did."""
     return w >= 0 and schedule[windows.pool[w].other].hits == windows.pool[w].other_hits
 
 
 @step
-def add(windows: Windows, schedule: Records, k: int, p: int) -> int:
+def open_on(windows: Windows, schedule: Records, k: int, p: int) -> int:
     """A new window of body k on body p, whose times and phase the caller sets."""
     w = int(windows.free[0].first)
     new = windows.pool[w]
@@ -124,13 +124,13 @@ def add(windows: Windows, schedule: Records, k: int, p: int) -> int:
     new.other_hits = schedule[p].hits
     new.next = windows.heads[k]
     windows.heads[k] = w
-    windows.starts[w].hulls[:] = -1
-    windows.starts[w].surfaces[:] = -1
+    windows.warm_starts[w].hulls[:] = -1
+    windows.warm_starts[w].surfaces[:] = -1
     return w
 
 
 @step
-def remove(windows: Windows, k: int, w: int) -> None:
+def close(windows: Windows, k: int, w: int) -> None:
     """Body k closes one of its windows."""
     pool = windows.pool
     following = pool[w].next
@@ -181,14 +181,14 @@ def next_due(windows: Windows, schedule: Records, k: int) -> int:
 @step
 def sooner(window: Record, than: Record, schedule: Records) -> bool:
     """Whether a window comes before another of the same body and time."""
-    due, than_due = window.phase == DUE, than.phase == DUE
+    due, than_due = window.phase == Phase.DUE, than.phase == Phase.DUE
     if due != than_due:
         return bool(than_due)
     return bool(schedule[window.other].label < schedule[than.other].label)
 
 
 @step
-def shift(windows: Windows, base: float) -> None:
+def shift_windows(windows: Windows, base: float) -> None:
     """Count all times from another base."""
     for k in range(windows.heads.size):
         w = windows.heads[k]

@@ -10,7 +10,7 @@ from harness.motion.predictive.state import World
 
 
 @step
-def gather(world: World, k: int, now: float, layer: Layer) -> int:
+def gather_candidates(world: World, k: int, now: float, layer: Layer) -> int:
     """Candidates from the cells: one's own grid, coarser grids around, finer grids within reach."""
     cells, grids, found = world.cells, world.cells.grids, world.scratch.found
     motion, place = world.spheres.motions[k], world.spheres.schedule[k]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from harness.kernel import kernel
+from harness.motion.predictive.codes import Phase
 from harness.motion.predictive.solids import SolidWorld, motion_of
-from harness.motion.predictive.windows import APART, DUE, NEAR, PARTING, TOUCHING, UNSURE, remove
+from harness.motion.predictive.windows import close
 from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
 from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
 from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
@@ -16,8 +17,8 @@ from harness.narrowphase.verdicts import SearchVerdict
 def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     """Find the hit of body k in its window w, which is due; close the window if there is none."""
     world, body = solid.world, solid.body
-    motions, schedule, counts = world.spheres.motions, world.spheres.schedule, world.tally.counts[0]
-    window, warm = solid.windows.pool[w], solid.windows.starts[w]
+    motions, schedule, counts = world.spheres.motions, world.spheres.schedule, world.totals.counts[0]
+    window, warm = solid.windows.pool[w], solid.windows.warm_starts[w]
     p = int(window.other)
     # The labels order the two, so that it does not matter who holds the window
     swap = schedule[p].label < schedule[k].label
@@ -28,8 +29,8 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     left = max(window.end - now, 0.0)
     hull, phase = body.shape.hull, window.phase
     hull_seeds = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
-    coarse = body.concave and phase == APART
-    if phase == TOUCHING:
+    coarse = body.concave and phase == Phase.APART
+    if phase == Phase.TOUCHING:
         if body.concave:
             ended = end_of_mesh_contact(body.shape, body.shape, a, b, 0.0, left, 2.0 * tolerance)
         else:
@@ -48,27 +49,27 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     counts.narrow_tests += 1
     counts.advancement_steps += steps
     if verdict == SearchVerdict.NEVER:
-        remove(solid.windows, k, w)
+        close(solid.windows, k, w)
         return
     window.time = now + time
     # What has just parted cannot touch but by rounding
-    if verdict == SearchVerdict.STALLED or (phase == PARTING and time == 0.0):
-        if time < world.rules.pause:
-            window.time = now + world.rules.pause
+    if verdict == SearchVerdict.STALLED or (phase == Phase.PARTING and time == 0.0):
+        if time < world.rules.cooldown:
+            window.time = now + world.rules.cooldown
             counts.stalled_events += 1
     elif coarse:
-        window.phase = NEAR
-    elif phase == TOUCHING:
-        window.phase = PARTING
+        window.phase = Phase.NEAR
+    elif phase == Phase.TOUCHING:
+        window.phase = Phase.PARTING
     else:
-        window.phase = TOUCHING if phase == UNSURE and time == 0.0 else DUE
+        window.phase = Phase.TOUCHING if phase == Phase.UNSURE and time == 0.0 else Phase.DUE
 
 
 @kernel
 def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     """Find the hit of body k on the wall ahead along an axis."""
     world, body = solid.world, solid.body
-    counts, rules, window = world.tally.counts[0], world.rules, solid.windows.walls[k, axis]
+    counts, rules, window = world.totals.counts[0], world.rules, solid.windows.walls[k, axis]
     face = 2 * axis + (1 if world.spheres.motions[k].velocity[axis] > 0.0 else 0)
     flight = motion_of(body, world.spheres.motions, k, now)
     found = time_of_wall_impact(
@@ -78,7 +79,7 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     counts.advancement_steps += found.steps
     window.time = now + found.time
     if found.verdict == SearchVerdict.FOUND:
-        window.phase = DUE
-    elif found.time < rules.pause:
-        window.time = now + rules.pause
+        window.phase = Phase.DUE
+    elif found.time < rules.cooldown:
+        window.time = now + rules.cooldown
         counts.stalled_events += 1

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from harness.motion.predictive.simulation import Simulation
-from tests.motion.crowd import fluid
+from tests.motion.fluids import fluid
 
 
 def carnahan_starling(eta):

@@ -1,4 +1,4 @@
-"""Memory: asked for before it is needed."""
+"""A hint to the processor: read a cache line before it is needed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
 
-def _fetch(context: Any, array: Any, row: Any) -> Any:
+def _prefetch(context: Any, array: Any, row: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         data = cast(Any, make_array)(signature.args[0])(context, builder, arguments[0])
@@ -30,5 +30,5 @@ def _fetch(context: Any, array: Any, row: Any) -> Any:
     return types.void(array, row), generate
 
 
-# Ask for the cache line where a row of a C-contiguous array begins, without waiting for it.
-fetch = cast(Callable[[Any, int], None], intrinsic(_fetch))
+# Begin to read the cache line where a row of a C-contiguous array begins, without waiting for it.
+prefetch = cast(Callable[[Any, int], None], intrinsic(_prefetch))
