@@ -33,7 +33,7 @@ def test_real_meshes_keep_their_faces_and_close_once_equal_vertices_are_one(name
     mesh = read_mesh(SHIPPED / name)
     assert (len(mesh.faces), len(mesh.vertices)) == (faces, vertices)
     assert mesh.watertight
-    assert mesh.notes == ()
+    assert [note for note in mesh.notes if "not plane" not in note] == []
     assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.5, rel=1e-14)
 
 
@@ -82,7 +82,7 @@ def test_what_is_odd_but_allowed_is_noted():
     turned = np.vstack([faces[:1, ::-1], faces[1:]])
     above = np.vstack([CUBE.vertices, CUBE.vertices.mean(axis=0)])
     assert make_mesh("", CUBE.vertices, faces[1:]).notes == ("open: 3 boundary edges",)
-    assert make_mesh("", CUBE.vertices, degenerate).notes == ("1 degenerate face without area",)
+    assert make_mesh("", CUBE.vertices, degenerate).notes == ("1 degenerate face without area left out",)
     assert "non-manifold: 1 edge of more than two faces" in make_mesh("", above, fin).notes
     assert make_mesh("", CUBE.vertices, turned).notes[0].startswith("inconsistent: faces on the two sides of 3 edges")
 
