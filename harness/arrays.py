@@ -1,4 +1,4 @@
-"""Names for the kinds of array that signatures speak of; their shapes and units stand in the docstrings."""
+"""Names for the kinds of array in signatures; their shapes and units are in the docstrings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Errors that are the input's, not the program's: said to a person, with the place where to mend them."""
+"""Errors in the input, not in the program: a sentence for a person, with the place to correct."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ class Problem:
     message : what is wrong and what to do about it
     file : the file it stands in, if it stands in one
     line, column : counted from 1
+
+    Examples
+    --------
+    >>> print(Problem('unknown key "cuont"; did you mean "count"?', "experiments/mine.yaml", 7, 3))
+    experiments/mine.yaml:7:3: unknown key "cuont"; did you mean "count"?
     """
 
     message: str

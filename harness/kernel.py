@@ -6,15 +6,13 @@ and its named steps (`step`) may fuse a product into a sum, and count no referen
 
 from __future__ import annotations
 
-import hashlib
-import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from functools import cache
-from pathlib import Path
+from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar, cast
 
 import numba
+
+from harness.kernel_cache import forgiving, own_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -24,8 +22,7 @@ _njit: Any = numba.njit
 
 def kernel(function: Function) -> Function:
     """Compile a function over arrays, keeping its type for the checker."""
-    with _own_cache():
-        return cast(Function, numba.njit(cache=True, error_model="numpy")(function))
+    return cast(Function, _kept(function, error_model="numpy"))
 
 
 def inner(function: Function) -> Function:
@@ -37,7 +34,7 @@ def inner(function: Function) -> Function:
 
 
 # Where kernels, and the constants that are compiled into them, stand.
-_ROOMS = ("broadphase", "measure", "motion", "narrowphase", "scene")
+_ROOMS = ("broadphase", "measure", "methods", "motion", "narrowphase", "reference", "scene")
 
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
 # `nsz` concern divisions and the sign of zero.
@@ -55,8 +52,7 @@ _STEP: dict[str, Any] = {
 
 def loop(function: Function) -> Function:
     """Compile an event loop, which Python calls and which makes no array."""
-    with _own_cache():
-        return cast(Function, _njit(_nrt=False, cache=True, fastmath=_RELAXED, error_model="numpy")(function))
+    return cast(Function, _kept(function, _nrt=False, fastmath=_RELAXED, error_model="numpy"))
 
 
 def step(function: Function) -> Function:
@@ -69,29 +65,13 @@ def strict_step(function: Function) -> Function:
     return cast(Function, _njit(**_STEP)(function))
 
 
-@contextmanager
-def _own_cache() -> Iterator[None]:
-    """Keep what is compiled in a folder of these very sources.
-
-    numba looks only at the file of a kernel to tell whether it is stale, and would go on running old code of another
-    file that was inlined into it.
-    """
-    config: Any = numba.config
-    theirs = config.CACHE_DIR
-    config.CACHE_DIR = theirs or _cache_folder()
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = theirs
-
-
-@cache
-def _cache_folder() -> str:
-    package = Path(__file__).resolve().parent
-    sources = hashlib.sha256()
-    for file in [Path(__file__), *(file for room in _ROOMS for file in sorted((package / room).rglob("*.py")))]:
-        sources.update(file.read_bytes())
-    name = f"kernels-{sources.hexdigest()[:16]}"
-    beside = package / "__pycache__"
-    writable = os.access(beside if beside.exists() else package, os.W_OK)
-    return str(beside / name if writable else Path.home() / ".cache" / "harness" / name)
+def _kept(function: Any, **options: Any) -> Any:
+    """Compile, or load what was compiled before; nothing of either where numba is told not to compile."""
+    if getattr(numba.config, "DISABLE_JIT", False):
+        return function
+    with own_cache(_ROOMS) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
+        made = _njit(cache=bool(folder), **options)(function)
+        # where ours takes none, as on a full disk, numba turns to one that old code of ours may stand in
+        if not folder or made._cache.cache_path.startswith(folder):
+            return forgiving(made)
+    return _njit(**options)(function)

@@ -32,7 +32,7 @@ class AlgorithmWord:
     Parameters
     ----------
     meaning : which questions it asks, and when
-    stepped : whether it looks at frames, `dt` apart; else it computes events, as exactly as `tolerance` says
+    stepped : whether it steps from frame to frame, `dt` apart; else it computes events, as exactly as `tolerance` says
     own : whether the pairs are found by this program; else by the backend's own broad phase
     """
 
@@ -44,6 +44,7 @@ class AlgorithmWord:
 ALGORITHMS: dict[str, AlgorithmWord] = {
     "brute-force": AlgorithmWord("every pair, every frame"),
     "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies"),
+    "sap": AlgorithmWord("pairs from bodies sorted along an axis, each compared with those its interval overlaps"),
     "tree": AlgorithmWord("pairs from a dynamic tree of axis-aligned boxes"),
     "native": AlgorithmWord("the backend's own broad phase", own=False),
     "predictive": AlgorithmWord(
@@ -56,6 +57,13 @@ if TYPE_CHECKING:
 else:
     Algorithm = Literal[tuple(ALGORITHMS)]
 
+DEFAULT_ALGORITHM: Algorithm = "brute-force"
+"""What an experiment that names none is run with."""
+
+ReferenceAlgorithm = Literal["predictive"]
+REFERENCE_ALGORITHM: ReferenceAlgorithm = "predictive"
+"""What errors are measured against: frames would miss hits."""
+
 OWN_BACKEND = "fcl"
 """The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
 
@@ -63,17 +71,33 @@ METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages"
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 
 KNOBS = ("dt", "tolerance")
-"""Those of them that trade accuracy for time: the same method, set otherwise."""
+"""Those of them that trade accuracy for time within one method."""
+
+
+_UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
 
 
 def algorithms_of(backend: str) -> tuple[str, ...]:
-    """The algorithms that a backend can be asked with; one that is not of this program has its own detection only."""
+    """The algorithms that a backend can be asked with, first the one that its name alone stands for.
+
+    One that is not of this program has its own detection only.
+
+    >>> algorithms_of("pybullet")
+    ('native',)
+    >>> algorithms_of("fcl")[0]
+    'brute-force'
+    """
     own = backend == OWN_BACKEND
     return tuple(name for name, word in ALGORITHMS.items() if word.own == own)
 
 
 class MethodName(NamedTuple):
-    """What answers a run's question, by name: the noun under which runs, verdicts and ranks of a method are kept."""
+    """What answers a run's question, by name: the noun under which runs, verdicts and ranks of a method are kept.
+
+    >>> method = MethodName.of({"backend": "fcl", "algorithm": "grid", "shape": "hull", "count": 50})
+    >>> method.pipeline, method.query, method.knob
+    ('fcl/grid', 'collision', 'dt')
+    """
 
     backend: str
     algorithm: str
@@ -83,17 +107,47 @@ class MethodName(NamedTuple):
     @classmethod
     def of(cls, parameters: Mapping[str, Any]) -> MethodName:
         """The method of a run with these leaves; databases of before there were queries know collision alone."""
-        query = parameters.get("query", "collision")
+        query: Query = parameters.get("query") or "collision"
         return cls(str(parameters["backend"]), str(parameters["algorithm"]), parameters["shape"], query)
+
+    @classmethod
+    def read(cls, pipeline: str, shape: Shape, query: Query = "collision") -> MethodName:
+        """The method of a pipeline's name, as a command or a stored comparison has it, on a shape.
+
+        A backend alone stands for its own pipeline; of the backend that answers single questions, for every pair.
+
+        >>> MethodName.read("fcl/grid", "hull").algorithm
+        'grid'
+        >>> MethodName.read("fcl", "hull").pipeline, MethodName.read("pybullet", "hull").pipeline
+        ('fcl/brute-force', 'pybullet')
+        """
+        backend, _, algorithm = pipeline.partition("/")
+        return cls(backend, algorithm or algorithms_of(backend)[0], shape, query)
 
     @property
     def pipeline(self) -> str:
         """Backend and algorithm as a command takes them: "fcl/grid", and the backend alone for its own pipeline."""
-        return f"{self.backend}/{self.algorithm}" if ALGORITHMS[self.algorithm].own else self.backend
+        return f"{self.backend}/{self.algorithm}" if self._word.own else self.backend
+
+    @property
+    def short(self) -> str:
+        """The shortest name that `read` understands: "fcl" for every pair put to FCL, else as `pipeline`."""
+        alone = MethodName.read(self.backend, self.shape, self.query)
+        return self.backend if alone == self else self.pipeline
+
+    @property
+    def stepped(self) -> bool:
+        """Whether it steps from frame to frame; else it computes events."""
+        return self._word.stepped
 
     @property
     def knob(self) -> str:
         """The leaf that trades accuracy for time: "dt", "tolerance", or "" of a method that is exact."""
-        if ALGORITHMS[self.algorithm].stepped:
+        if self.stepped:
             return "dt"
         return "" if self.shape == "sphere" else "tolerance"
+
+    @property
+    def _word(self) -> AlgorithmWord:
+        # a database may hold runs of an algorithm that this version does not have
+        return ALGORITHMS.get(self.algorithm, _UNKNOWN)

@@ -7,24 +7,40 @@ from pathlib import Path
 
 import pytest
 
+from harness.vocabulary import ALGORITHMS
+
 PACKAGE = Path(__file__).parents[1] / "harness"
-BASE = {"arrays", "errors", "kernel", "vocabulary"}
-GEOMETRY = {"scene", "narrowphase", "broadphase", "backends"}
+BASE = {
+    "arrays",
+    "child_process",
+    "errors",
+    "kernel",
+    "kernel_cache",
+    "modules",
+    "process_limits",
+    "python_child",
+    "vocabulary",
+}
+KERNELS = {"scene", "narrowphase", "broadphase"}
+FLIGHT = KERNELS | {"backends", "measure", "motion", "methods"}
 KNOWS = {
     "experiment": set(),
     "scene": set(),
     "narrowphase": {"scene"},
     "broadphase": {"scene"},
-    "backends": {"scene", "narrowphase", "broadphase"},
+    "backends": {"scene", "narrowphase"},
     "measure": {"experiment", "scene"},
-    "motion": GEOMETRY | {"measure"},
+    "motion": KERNELS | {"measure"},
+    "reference": KERNELS | {"backends", "measure", "motion"},
+    "methods": KERNELS | {"backends", "measure", "motion"},
     "store": set(),
-    "compare": GEOMETRY | {"motion", "measure"},
-    "runner": GEOMETRY | {"experiment", "measure", "motion", "store"},
+    "compare": FLIGHT,
+    "runner": FLIGHT | {"experiment", "reference", "store"},
     "replay": {"store"},
     "report": {"store", "measure", "replay"},
-    "cli": GEOMETRY | {"experiment", "measure", "motion", "store", "compare", "runner", "replay", "report"},
+    "cli": FLIGHT | {"experiment", "reference", "store", "compare", "runner", "replay", "report"},
 }
+LIBRARIES = {"fcl", "pybullet", "coal", "mujoco", "trimesh"}
 
 
 def rooms_imported(file: Path) -> set[str]:
@@ -39,6 +55,32 @@ def test_a_room_imports_only_what_it_may_know(room):
     for file in (PACKAGE / room).rglob("*.py"):
         strangers = rooms_imported(file) - KNOWS[room] - BASE - {room}
         assert not strangers, f"{file.relative_to(PACKAGE)} imports {sorted(strangers)}"
+
+
+@pytest.mark.parametrize("room", ["narrowphase", "broadphase"])
+def test_kernels_import_no_collision_library(room):
+    for file in (PACKAGE / room).rglob("*.py"):
+        imported = [
+            name.name if isinstance(node, ast.Import) else node.module or ""
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Import | ast.ImportFrom)
+            for name in node.names
+        ]
+        assert not LIBRARIES & {module.split(".")[0] for module in imported}, file.relative_to(PACKAGE)
+
+
+@pytest.mark.slow
+def test_no_file_outside_of_the_methods_and_the_vocabulary_names_an_algorithm():
+    words = set(ALGORITHMS)
+    for file in PACKAGE.rglob("*.py"):
+        if file.relative_to(PACKAGE).parts[0] in ("methods", "vocabulary.py"):
+            continue
+        quoted = {
+            node.value
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        }
+        assert not words & quoted, f"{file.relative_to(PACKAGE)} names {sorted(words & quoted)}"
 
 
 def test_every_room_has_its_rule():

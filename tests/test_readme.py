@@ -11,7 +11,7 @@ from harness.backends.fcl import Fcl
 from harness.backends.protocol import Backend
 from harness.cli.main import COMMANDS, main
 from harness.experiment.load import load_text
-from harness.runner.setting import build_scene
+from harness.runner.scene_of_point import build_scene
 
 README = Path(__file__).parents[1] / "README.md"
 
@@ -39,6 +39,7 @@ def test_every_command_named_exists():
     assert set(spoken + typed) <= COMMANDS.keys()
 
 
+@pytest.mark.slow
 def test_an_experiment_is_added_as_it_says(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     *before, sweep, _ = commands(blocks("Add an experiment")[0])
@@ -50,7 +51,7 @@ def test_an_experiment_is_added_as_it_says(tmp_path, monkeypatch, capsys):
 def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
     namespace: dict[str, object] = {}
     exec(blocks("Add a backend", "python")[0], namespace)
-    mine, fcl = namespace["Mine"](), Fcl("brute-force")
+    mine, fcl = namespace["Mine"](), Fcl()
     assert isinstance(mine, Backend)
     text = "title: t\nscene: {shape: sphere, count: 40, box: [4, 4, 4], overlap: allow}\n"
     scene = build_scene(load_text(text, "readme.yaml").points[0], None)
@@ -61,6 +62,7 @@ def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
     np.testing.assert_array_equal(*found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", blocks("From Python", "python"))
 def test_the_lines_for_python_run(block, monkeypatch):
     monkeypatch.chdir(README.parent)

@@ -12,7 +12,7 @@ from harness.scene.mesh import Surface
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
-# coal's own 1e-6 leaves more verdicts to chance
+# with coal's own 1e-6 more verdicts near touching are wrong
 _GJK_TOLERANCE = 1e-12
 
 
@@ -42,7 +42,7 @@ class Coal:
         self._objects = []
         for body, size in enumerate(sizes):
             geometry = convex(scene, size, self._unit)
-            # a contact names geometries as new objects, which are known again by this number alone
+            # a contact holds new objects for its geometries; only this number says which body one belongs to
             geometry.cost_density = float(body)
             self._objects.append(coal.CollisionObject(geometry, coal.Transform3s()))
         self._tree = coal.DynamicAABBTreeCollisionManager()
@@ -108,3 +108,6 @@ def _lists(solid: Surface) -> tuple[coal.StdVec_Vec3s, coal.StdVec_Triangle]:
     for face in solid.faces.tolist():
         faces.append(coal.Triangle(*face))
     return vertices, faces
+
+
+BACKEND = Coal

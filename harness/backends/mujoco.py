@@ -93,3 +93,6 @@ class MuJoCo:
         mujoco.mju_quat2Mat(turn, model.geom_quat[body])
         vertices = model.mesh_vert[start : start + count].astype(np.float64) @ turn.reshape(3, 3).T
         return convex_hull((vertices + model.geom_pos[body]) * self._unit)
+
+
+BACKEND = MuJoCo

@@ -1,7 +1,8 @@
 """What a backend is: a complete detector, asked for all touching pairs at given poses.
 
-A package adds one by a class of this form and an entry point in the group `harness.backends`; it is then named by
-`engine.backend` with the algorithm `native`. What the functions below ask for, a backend may have beside that.
+A file of this folder adds one by a class of this form and a line `BACKEND = Class`; another package by an entry point
+in the group `harness.backends`. It is then named by `engine.backend`, with its own pipeline as the algorithm. What the
+functions below ask for, a backend may have beside that.
 """
 
 from __future__ import annotations
@@ -44,18 +45,6 @@ class Backend(Protocol):
         positions : (n, 3) float array, m
         quaternions : (n, 4) float array, unit, w x y z
         """
-
-
-def counters(backend: Backend) -> Mapping[str, float]:
-    """What the backend has counted since it was loaded (`pair_tests`, `narrow_tests`); empty if it does not count."""
-    counted: Mapping[str, float] = getattr(backend, "counters", {})
-    return counted
-
-
-def assemble(backend: Backend, stages: Mapping[str, bool]) -> None:
-    """Tell a backend that can leave stages out, before it is loaded, which are forced on or off."""
-    if hasattr(backend, "stages"):
-        backend.stages = stages
 
 
 def units(backend: Backend) -> str:

@@ -89,3 +89,6 @@ class PyBullet:
         # vertices without indices make a convex hull; with indices they would make a concave mesh
         vertices = (scene.mesh.hull.vertices * size).tolist()
         return int(pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=vertices, physicsClientId=self._client))
+
+
+BACKEND = PyBullet

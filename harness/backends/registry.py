@@ -1,22 +1,56 @@
-"""Backends by name, found by the entry points of the group `harness.backends`.
+"""Backends by name: the files of this folder that have one, and the entry points of the group `harness.backends`.
 
-An entry point may name an extra of its package in brackets, `module:Class [extra]`: the one that brings the library.
+A file of this folder is a backend if it says `BACKEND = Class`; what it says is read, not run, since importing a
+library takes time and may fail. It may say `PACKAGE = "name"` too: the package that brings the library. An entry point
+may name an extra of its package in brackets, `module:Class [extra]`: the one that brings the library.
 """
 
 from __future__ import annotations
 
+import ast
 import ctypes
 import os
+import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import lru_cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib import import_module
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
+from pathlib import Path
 
 from harness.backends.protocol import Backend
 from harness.errors import InputError
 
 GROUP = "harness.backends"
+PROGRAM = "harness"
+
+
+class BackendError(InputError):
+    """A backend cannot be used; `why` says why, without its name."""
+
+    def __init__(self, name: str, why: str) -> None:
+        super().__init__(f'backend "{name}" cannot be used: {why}')
+        self.why = why
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A backend that is declared, installed or not.
+
+    Parameters
+    ----------
+    load : imports its class
+    command : what brings its library, where that is an extra of its own
+    packages : whose versions its verdicts and times depend on
+    ours : whether it comes with this program
+    """
+
+    load: Callable[[], type[Backend]]
+    command: str | None = None
+    packages: frozenset[str] = frozenset()
+    ours: bool = True
 
 
 def names() -> list[str]:
@@ -24,13 +58,17 @@ def names() -> list[str]:
     return sorted(_declared())
 
 
-def create(name: str, algorithm: str = "native") -> Backend:
+def packages() -> frozenset[str]:
+    """The packages that a measurement depends on: this program's, and those of every declared backend."""
+    return frozenset({PROGRAM}) | _required(PROGRAM).union(*(found.packages for found in _declared().values()))
+
+
+def create(name: str) -> Backend:
     """A new backend, not loaded yet.
 
     Parameters
     ----------
     name : as in `engine.backend`
-    algorithm : given to the backend, unless it is its own (`native`)
 
     Raises
     ------
@@ -42,48 +80,25 @@ def create(name: str, algorithm: str = "native") -> Backend:
         raise InputError(f'there is no backend "{name}"; there are {", ".join(sorted(declared))}')
     try:
         with silence():
-            made = declared[name].load()
-            backend: Backend = made() if algorithm == "native" else made(algorithm)
+            backend = declared[name].load()()
     except ImportError as error:
-        raise InputError(f'backend "{name}" cannot be used: {_why(declared[name], error)}') from error
+        raise BackendError(name, _why(declared[name], error)) from error
     return backend
-
-
-def missing(name: str) -> str | None:
-    """Why a backend that is an extra of its package cannot be used, with what to do about it; None if it can.
-
-    Of other backends nothing is said: what they import is looked at where it can do no harm.
-    """
-    entry = _declared().get(name)
-    if entry is None or not entry.extras:
-        return None
-    try:
-        with silence():
-            entry.load()
-    except ImportError as error:
-        return f'backend "{name}" cannot be used: {_why(entry, error)}'
-    return None
 
 
 def install_command(name: str) -> str | None:
     """What brings the library of a declared backend, where it is an extra."""
-    entry = _declared()[name]
-    return _command(entry) if entry.extras else None
+    return _declared()[name].command
 
 
-def available() -> dict[str, str | None]:
-    """Every declared backend by name, with why it cannot be used, or None if it can."""
-    found: dict[str, str | None] = {}
-    for name, entry in sorted(_declared().items()):
-        try:
-            with silence():
-                entry.load()
-            found[name] = None
-        except ImportError as error:
-            found[name] = _why(entry, error)
-        except Exception as error:  # a plugin may fail in any way; it must not take the others with it
-            found[name] = f"{type(error).__name__}: {error}"
-    return found
+def ours(name: str) -> bool:
+    """Whether a declared backend comes with this program."""
+    return _declared()[name].ours
+
+
+def is_extra(name: str) -> bool:
+    """Whether a backend is declared as an extra of its package."""
+    return name in _declared() and _declared()[name].command is not None
 
 
 @contextmanager
@@ -98,6 +113,8 @@ def silence() -> Iterator[None]:
     try:
         yield
     finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
         ctypes.CDLL(None).fflush(None)  # what C has buffered must go before the real output is back
         for stream, copy in kept:
             os.dup2(copy, stream)
@@ -105,20 +122,80 @@ def silence() -> Iterator[None]:
         os.close(nowhere)
 
 
-def _why(entry: EntryPoint, error: ImportError) -> str:
-    return f"not installed; {_command(entry)}" if entry.extras else f"{type(error).__name__}: {error}"
+def _why(declared: Declaration, error: ImportError) -> str:
+    return f"not installed; {declared.command}" if declared.command else f"{type(error).__name__}: {error}"
 
 
-def _command(entry: EntryPoint) -> str:
-    package = entry.dist.name if entry.dist else "harness"
-    return f"pip install '{package}[{','.join(entry.extras)}]'"
-
-
-def _declared() -> dict[str, EntryPoint]:
+def _declared() -> dict[str, Declaration]:
     return _declared_on(tuple(sys.path))
 
 
 @lru_cache(maxsize=8)
-def _declared_on(path: tuple[str, ...]) -> dict[str, EntryPoint]:
-    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend."""
-    return {entry.name: entry for entry in entry_points(group=GROUP)}
+def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
+    """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend.
+
+    A name of ours stays ours, whoever declares it besides.
+    """
+    pointed = [(entry.name, _pointed(entry)) for entry in entry_points(group=GROUP)]
+    theirs = {name: found for name, found in pointed if not found.ours}
+    return {**theirs, **_in_this_folder(), **{name: found for name, found in pointed if found.ours}}
+
+
+def _pointed(entry: EntryPoint) -> Declaration:
+    package = entry.dist.name if entry.dist else ""
+    extras = _extras(entry)
+    command = f"pip install '{package or PROGRAM}[{','.join(extras)}]'" if extras else None
+    needed = _required(package, *extras) if package else frozenset[str]()
+    ours = package == PROGRAM
+    return Declaration(entry.load, command, needed if ours or not package else needed | {package}, ours)
+
+
+def _extras(entry: EntryPoint) -> list[str]:
+    try:
+        return entry.extras
+    except (AttributeError, AssertionError, ValueError):  # a value that names no module and no class
+        return []
+
+
+def _in_this_folder() -> dict[str, Declaration]:
+    """The backends of this folder, each named as its file."""
+    found = {}
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        said = dict(_constants(file))
+        if "BACKEND" in said:
+            package = said.get("PACKAGE")
+            found[file.stem] = Declaration(
+                _loader(file.stem),
+                f"pip install {package}" if package else None,
+                frozenset({package} if package else ()),
+            )
+    return found
+
+
+def _loader(module: str) -> Callable[[], type[Backend]]:
+    def load() -> type[Backend]:
+        made: type[Backend] = import_module(f"harness.backends.{module}").BACKEND
+        return made
+
+    return load
+
+
+def _constants(file: Path) -> Iterator[tuple[str, str]]:
+    """The names at the top of a file to which a word or another name is assigned, each with that."""
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            if isinstance(node.value, ast.Constant):
+                yield node.targets[0].id, str(node.value.value)
+            elif isinstance(node.value, ast.Name):
+                yield node.targets[0].id, node.value.id
+
+
+def _required(package: str, *extras: str) -> frozenset[str]:
+    """The packages that a package needs, always or for one of these extras."""
+    try:
+        lines = requires(package) or ()
+    except PackageNotFoundError:
+        return frozenset()
+    wanted = [None, *extras]
+    parts = [(re.match(r"[\w.-]+", line), re.search(r"extra\s*==\s*['\"]([^'\"]+)", line)) for line in lines]
+    return frozenset(name[0] for name, extra in parts if name and (extra[1] if extra else None) in wanted)

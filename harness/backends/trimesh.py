@@ -52,3 +52,6 @@ class Trimesh:
             self._manager.set_transform(body, pose)
         _, touching = self._manager.in_collision_internal(return_names=True)
         return np.array(sorted(touching), np.int64).reshape(-1, 2)
+
+
+BACKEND = Trimesh

@@ -11,7 +11,7 @@ neighbours along z are one run of bodies.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,51 +45,71 @@ SLACK = 1e-6
 """Relative surplus of a cell over its largest body: more than rounding can do to fewer than 1e9 cells along an axis."""
 
 
-@kernel
-def close_pairs(
-    positions: Floats,
-    half: Floats,
-    radii: Floats,
-    members: Ints,
-    levels: Levels,
-    start: Ints,
-    home: Ints,
-    slots: Ints,
-    spheres: Floats,
-    keys: Keys,
-) -> tuple[int, int]:
-    """Sort the bodies into cells and test neighbours.
+class Cells(NamedTuple):
+    """The bodies of a frame, sorted by cell. A slot is a body's place in the order by level, then cell, then number.
 
-    A slot is a body's place in the order by level, then cell, then number.
+    Attributes
+    ----------
+    radii : (n,) m
+    members : (n,) the bodies by level, each level's in ascending order
+    levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written every frame
+    start : (sum of budgets + 1,) written: the first slot of each cell
+    cell_of : (n,) written: each member's cell
+    slots : (n, 2) written: each slot's cell and body
+    spheres : (n, 4) written: each slot's x, y, z and radius, m
+    """
+
+    radii: Floats
+    members: Ints
+    levels: Levels
+    start: Ints
+    cell_of: Ints
+    slots: Ints
+    spheres: Floats
+
+
+class Found(NamedTuple):
+    """How many pairs are close, and how many were tested."""
+
+    close: int
+    tests: int
+
+
+class Block(NamedTuple):
+    """A block of cells: the first and the last along each axis."""
+
+    x0: int
+    x1: int
+    y0: int
+    y1: int
+    z0: int
+    z1: int
+
+
+@kernel
+def close_pairs(positions: Floats, half: Floats, cells: Cells, keys: Keys) -> Found:
+    """Sort the bodies into cells and test neighbours.
 
     Parameters
     ----------
     positions : (n, 3), m
     half : (3,), m; half the sides of the box
-    radii : (n,), m
-    members : (n,) the bodies by level, each level's in ascending order
-    levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written
-    start : (sum of budgets + 1,) written: the first slot of each cell
-    home : (n,) written: each member's cell
-    slots, spheres : (n, 2), (n, 4) written: each slot's cell and body, and x, y, z and radius, m
+    cells : Cells
     keys : (room,) written: i << 32 | j of each close pair, in no order, as far as there is room
-
-    Returns
-    -------
-    How many pairs are close, and how many were tested.
     """
     require_finite(positions)
+    levels = cells.levels
     fit_lattices(positions, half, levels)
-    sort_by_cell(positions, radii, members, levels, start, home, slots, spheres)
-    found, tests = 0, 0
+    sort_by_cell(positions, cells)
+    close, tests = 0, 0
     for fine in range(len(levels)):
-        found, tests = pairs_within(levels[fine], start, slots, spheres, keys, found, tests)
+        close, tests = pairs_within(levels[fine], cells, keys, close, tests)
         for coarse in range(fine):
             seekers, others = levels[fine], levels[coarse]
-            if work(others, seekers) < work(seekers, others):
+            if expected_work(others, seekers) < expected_work(seekers, others):
                 seekers, others = others, seekers
-            found, tests = pairs_between(seekers, others, start, slots, spheres, keys, found, tests)
-    return found, tests
+            close, tests = pairs_between(seekers, others, cells, keys, close, tests)
+    return Found(close, tests)
 
 
 @kernel
@@ -149,36 +169,35 @@ def cells_along(length: float, edge: float) -> float:
 @kernel
 def cell_at(level: Level, x: float, y: float, z: float) -> int:
     """The level's cell at a point, m; beyond the border, the nearest."""
-    ix = step(x, level.low_x, level.scale_x, level.last_x)
-    iy = step(y, level.low_y, level.scale_y, level.last_y)
-    iz = step(z, level.low_z, level.scale_z, level.last_z)
+    ix = cell_along(x, level.low_x, level.scale_x, level.last_x)
+    iy = cell_along(y, level.low_y, level.scale_y, level.last_y)
+    iz = cell_along(z, level.low_z, level.scale_z, level.last_z)
     return int(level.first + ix * level.plane + iy * level.row + iz)
 
 
 @kernel
-def step(x: float, low: float, scale: float, last: float) -> int:
-    """Cell along an axis. It never decreases with x, whatever is rounded: `steps` relies on it."""
+def cell_along(x: float, low: float, scale: float, last: float) -> int:
+    """Cell along an axis. It never decreases with x, whatever is rounded: `block_around` relies on it."""
     return int(min(max((x - low) * scale, 0.0), last))
 
 
 @kernel
-def steps(x: float, reach: float, low: float, scale: float, last: float) -> tuple[int, int]:
-    """First and last cell along an axis within reach of a coordinate: no body there is in any other cell."""
-    return step(x - reach, low, scale, last), step(x + reach, low, scale, last)
+def block_around(level: Level, x: float, y: float, z: float, reach: float) -> Block:
+    """The level's cells within reach of a point along each axis: no body there is in any other cell."""
+    return Block(
+        cell_along(x - reach, level.low_x, level.scale_x, level.last_x),
+        cell_along(x + reach, level.low_x, level.scale_x, level.last_x),
+        cell_along(y - reach, level.low_y, level.scale_y, level.last_y),
+        cell_along(y + reach, level.low_y, level.scale_y, level.last_y),
+        cell_along(z - reach, level.low_z, level.scale_z, level.last_z),
+        cell_along(z + reach, level.low_z, level.scale_z, level.last_z),
+    )
 
 
 @kernel
-def sort_by_cell(
-    positions: Floats,
-    radii: Floats,
-    members: Ints,
-    levels: Levels,
-    start: Ints,
-    home: Ints,
-    slots: Ints,
-    spheres: Floats,
-) -> None:
+def sort_by_cell(positions: Floats, cells: Cells) -> None:
     """Counting sort: count the bodies of each cell, sum up to each cell's end, fill each cell from its end."""
+    radii, members, levels, start, cell_of, slots, spheres = cells
     used = levels[-1].first + levels[-1].cells
     start[: used + 1] = 0
     for index in range(len(levels)):
@@ -186,14 +205,14 @@ def sort_by_cell(
         for member in range(level.begin, level.end):
             i = members[member]
             cell = cell_at(level, positions[i, 0], positions[i, 1], positions[i, 2])
-            home[member] = cell
+            cell_of[member] = cell
             start[cell] += 1
     end = 0
     for cell in range(used + 1):
         end += start[cell]
         start[cell] = end
     for member in range(len(members) - 1, -1, -1):
-        i, cell = members[member], home[member]
+        i, cell = members[member], cell_of[member]
         slot = start[cell] - 1
         start[cell] = slot
         slots[slot, 0], slots[slot, 1] = cell, i
@@ -203,54 +222,53 @@ def sort_by_cell(
 
 
 @kernel
-def pairs_within(
-    level: Level, start: Ints, slots: Ints, spheres: Floats, keys: Keys, found: int, tests: int
-) -> tuple[int, int]:
-    """Each body with those after it in its own cell, and with the later half of the neighbouring cells."""
+def pairs_within(level: Level, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
+    """Each body with those after it in its own cell, and with the later half of the neighbouring cells.
+
+    Parameters and answer: `close` pairs and `tests` so far, and with those of this level.
+    """
+    start, slots, spheres = cells.start, cells.slots, cells.spheres
     row, plane = level.row, level.plane
     for slot in range(level.begin, level.end):
         cell = slots[slot, 0]
         end = start[cell + 2]
-        found = compare(slot, slot + 1, end, slots, spheres, keys, found)
+        close = compare(slot, slot + 1, end, slots, spheres, keys, close)
         tests += max(0, end - slot - 1)
         for neighbour in range(4):
             middle = cell + row if neighbour == 0 else cell + plane + (neighbour - 2) * row
             begin, end = start[middle - 1], start[middle + 2]
-            found = compare(slot, begin, end, slots, spheres, keys, found)
+            close = compare(slot, begin, end, slots, spheres, keys, close)
             tests += end - begin
-    return found, tests
+    return Found(close, tests)
 
 
 @kernel
-def pairs_between(
-    seekers: Level, others: Level, start: Ints, slots: Ints, spheres: Floats, keys: Keys, found: int, tests: int
-) -> tuple[int, int]:
+def pairs_between(seekers: Level, others: Level, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
     """Each body of one level with the bodies of the other in all cells where their centres can be.
 
     Either level may seek. Many small bodies each look into a few cells of the coarse lattice, but a few large ones do
-    less work if they go through the fine cells that they cover.
+    less work if they go through the fine cells that they cover. `close` and `tests` are as for `pairs_within`.
     """
+    start, slots, spheres = cells.start, cells.slots, cells.spheres
     for slot in range(seekers.begin, seekers.end):
-        x, y, z = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2]
         reach = (spheres[slot, 3] + others.reach) * (1.0 + SLACK)
-        x0, x1 = steps(x, reach, others.low_x, others.scale_x, others.last_x)
-        y0, y1 = steps(y, reach, others.low_y, others.scale_y, others.last_y)
-        z0, z1 = steps(z, reach, others.low_z, others.scale_z, others.last_z)
-        for plane in range(others.first + x0 * others.plane, others.first + x1 * others.plane + 1, others.plane):
-            for row in range(plane + y0 * others.row, plane + y1 * others.row + 1, others.row):
-                begin, end = start[row + z0], start[row + z1 + 1]
-                found = compare(slot, begin, end, slots, spheres, keys, found)
+        block = block_around(others, spheres[slot, 0], spheres[slot, 1], spheres[slot, 2], reach)
+        first, last = others.first + block.x0 * others.plane, others.first + block.x1 * others.plane
+        for plane in range(first, last + 1, others.plane):
+            for row in range(plane + block.y0 * others.row, plane + block.y1 * others.row + 1, others.row):
+                begin, end = start[row + block.z0], start[row + block.z1 + 1]
+                close = compare(slot, begin, end, slots, spheres, keys, close)
                 tests += end - begin
-    return found, tests
+    return Found(close, tests)
 
 
 @kernel
-def work(seekers: Level, others: Level) -> float:
+def expected_work(seekers: Level, others: Level) -> float:
     """Steps that `pairs_between` can be expected to take: rows of cells looked into, and bodies tested there."""
     reach = seekers.reach + others.reach
     rows = cells_covered(reach, others.scale_x, others.last_x) * cells_covered(reach, others.scale_y, others.last_y)
-    crowd = cells_covered(reach, others.scale_z, others.last_z) * (others.end - others.begin) / others.cells
-    return float((seekers.end - seekers.begin) * (4.0 + rows * (1.0 + crowd)))  # 4: to find the first cell
+    bodies = cells_covered(reach, others.scale_z, others.last_z) * (others.end - others.begin) / others.cells
+    return float((seekers.end - seekers.begin) * (4.0 + rows * (1.0 + bodies)))  # 4: to find the first cell
 
 
 @kernel
@@ -260,31 +278,35 @@ def cells_covered(reach: float, scale: float, last: float) -> float:
 
 
 @inner
-def compare(slot: int, begin: int, end: int, slots: Ints, spheres: Floats, keys: Keys, found: int) -> int:
+def compare(slot: int, begin: int, end: int, slots: Ints, spheres: Floats, keys: Keys, close: int) -> int:
     """Put the body in a slot to the test with a run of others. Returns how many close pairs are found by now."""
     x, y, z, radius = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2], spheres[slot, 3]
     for other in range(begin, end):
         dx, dy, dz = x - spheres[other, 0], y - spheres[other, 1], z - spheres[other, 2]
         if touching(dx, dy, dz, radius + spheres[other, 3]):
-            if found < len(keys):
+            if close < len(keys):
                 i, j = slots[slot, 1], slots[other, 1]
-                keys[found] = min(i, j) << 32 | max(i, j)
-            found += 1
-    return found
+                keys[close] = min(i, j) << 32 | max(i, j)
+            close += 1
+    return close
+
+
+class Overlapped(NamedTuple):
+    """Cells of its own level that a body's bounding cube overlaps: the most of any body, and the sum over all."""
+
+    most: int
+    total: int
 
 
 @kernel
-def count_cells(levels: Levels, spheres: Floats) -> tuple[int, int]:
-    """Cells of its own level that a body's bounding cube overlaps: the most of any body, and the sum over all."""
+def count_overlapped(levels: Levels, spheres: Floats) -> Overlapped:
+    """How many cells the bodies overlap, as they were last sorted."""
     most, total = 0, 0
     for index in range(len(levels)):
         level = levels[index]
         for slot in range(level.begin, level.end):
-            x, y, z, r = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2], spheres[slot, 3]
-            x0, x1 = steps(x, r, level.low_x, level.scale_x, level.last_x)
-            y0, y1 = steps(y, r, level.low_y, level.scale_y, level.last_y)
-            z0, z1 = steps(z, r, level.low_z, level.scale_z, level.last_z)
-            overlapped = (x1 - x0 + 1) * (y1 - y0 + 1) * (z1 - z0 + 1)
+            block = block_around(level, spheres[slot, 0], spheres[slot, 1], spheres[slot, 2], spheres[slot, 3])
+            overlapped = (block.x1 - block.x0 + 1) * (block.y1 - block.y0 + 1) * (block.z1 - block.z0 + 1)
             most = max(most, overlapped)
             total += overlapped
-    return most, total
+    return Overlapped(most, total)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from harness.arrays import Floats, Pairs
 from harness.broadphase import cells
 from harness.broadphase.pairs import checked_positions, checked_radii
+from harness.broadphase.scheme import Scheme
 from harness.kernel import kernel
 from harness.scene.box import Box
 
@@ -33,18 +34,16 @@ class Grid:
         count = len(self.radii)
         level = self.size_classes()
         members = np.argsort(level, kind="stable")
-        self._levels = plan_levels(self.radii[members], level[members])
-        self._spheres = np.zeros((count, 4))
-        room = int(self._levels["budget"].sum()) + 1
-        self._arrays = (
-            np.array(box.half, np.float64),
-            self.radii,
-            members.astype(np.int32),
-            self._levels,
-            np.empty(room, np.int32),
-            np.empty(count, np.int32),
-            np.empty((count, 2), np.int32),
-            self._spheres,
+        levels = plan_levels(self.radii[members], level[members])
+        self._half = np.array(box.half, np.float64)
+        self._cells = cells.Cells(
+            radii=self.radii,
+            members=members.astype(np.int32),
+            levels=levels,
+            start=np.empty(int(levels["budget"].sum()) + 1, np.int32),
+            cell_of=np.empty(count, np.int32),
+            slots=np.empty((count, 2), np.int32),
+            spheres=np.zeros((count, 4)),
         )
         self._keys = np.empty(count + 1, np.int64)
 
@@ -55,19 +54,19 @@ class Grid:
     def close_pairs(self, positions: ArrayLike) -> Pairs:
         """Pairs of bodies whose bounding spheres touch, as `BroadPhase.close_pairs` defines them."""
         positions = checked_positions(positions, len(self.radii))
-        found, tests = cells.close_pairs(positions, *self._arrays, self._keys)
-        if found > len(self._keys):  # count first, then make room: rare, as the room is kept
-            self._keys = np.empty(found + found // 2, np.int64)
-            cells.close_pairs(positions, *self._arrays, self._keys)
-        self.pair_tests += tests
-        keys = self._keys[:found]
+        found = cells.close_pairs(positions, self._half, self._cells, self._keys)
+        if found.close > len(self._keys):  # count first, then make room: rare, as the room is kept
+            self._keys = np.empty(found.close + found.close // 2, np.int64)
+            cells.close_pairs(positions, self._half, self._cells, self._keys)
+        self.pair_tests += found.tests
+        keys = self._keys[: found.close]
         keys.sort()
         return unpack(keys)
 
     @property
     def cell_count(self) -> int:
         """Cells of all levels in the last frame, the empty ones at the borders included."""
-        return int(self._levels["cells"].sum())
+        return int(self._cells.levels["cells"].sum())
 
     def cells_per_body(self) -> tuple[int, float]:
         """How many cells of its own level a body's bounding cube overlapped in the last frame: the most, and the mean.
@@ -75,8 +74,8 @@ class Grid:
         At most 8, as a cell is never smaller than a body. The lattice ends with the outermost centres, and what sticks
         out is in no cell.
         """
-        most, total = cells.count_cells(self._levels, self._spheres)
-        return most, total / max(1, len(self.radii))
+        overlapped = cells.count_overlapped(self._cells.levels, self._cells.spheres)
+        return overlapped.most, overlapped.total / max(1, len(self.radii))
 
 
 def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
@@ -105,3 +104,12 @@ def unpack(keys: cells.Keys) -> Pairs:
         pairs[k, 0] = keys[k] >> 32
         pairs[k, 1] = keys[k] & 0xFFFFFFFF
     return pairs
+
+
+def _make(radii: Floats, box: Box, size_classes: bool) -> Grid:
+    from harness.broadphase.hierarchical_grid import HierarchicalGrid  # which is a grid itself
+
+    return (HierarchicalGrid if size_classes else Grid)(radii, box)
+
+
+SCHEME = Scheme("a grid of cells", _make, "a level of cells for each factor of three")

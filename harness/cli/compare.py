@@ -1,9 +1,9 @@
-"""Hold backends against each other, and against exact arithmetic, on the same poses.
+"""Compare backends with each other, and with exact arithmetic, on the same poses.
 
 The bodies of each scene fly through each other, whatever its response, and every backend is asked about every frame;
 scenes of random bodies are followed by pairs at first contact, where verdicts are hardest. Where the experiment has a
-response, its first such scene is flown as well, by every backend for itself: the time of the first hit that only one
-of two answers is told, and what their flights have on average after it. What is found is kept in the database, and
+response, its first such scene is run as well by every backend for itself: the time of the first hit that only one of
+two answers is told, and the averages of both runs after it. What is found is kept in the database, and
 `harness report` shows it. Exits 1 if a backend is wrong beyond what its tolerance or its approximation explains, or
 fails at a pose.
 """
@@ -31,7 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--backends",
         metavar="A,B",
-        help="two or more; those that the experiment names where it names several, else fcl,pybullet",
+        help="two or more, such as fcl,fcl/grid,pybullet: a method of this program as BACKEND/ALGORITHM, a backend "
+        "alone for its own pipeline; those of the experiment where it names several, else fcl,pybullet",
     )
     add_override_argument(parser)
     parser.add_argument(
@@ -42,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compare, print, and say by the exit code whether anyone was wrong."""
+    """Compare, print, and tell by the exit code whether a backend was wrong."""
     import json
     import sys
 
@@ -85,25 +86,30 @@ def run(arguments: argparse.Namespace) -> int:
     for row in ordered:
         if row.tried and row.small is None:
             case = row.case
-            progress(f"{case.wrong}, {case.pose.name}, call {case.call}: it depends on what was asked before")
+            progress(f"{case.wrong}, {case.pose.name}, call {case.query_index}: it depends on what was asked before")
     _keep(keep, arguments.db)
     return 0 if whole.passed else 1
 
 
 def _chosen(text: str | None) -> tuple[str, ...]:
-    """The backends that `--backends` names."""
+    """The backends and methods that `--backends` names."""
     from harness.backends.registry import names
     from harness.errors import InputError
     from harness.experiment.messages import listed, near, shown
+    from harness.vocabulary import ALGORITHMS, algorithms_of
 
     if text is None:
         return ()
     chosen = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
     for name in chosen:
-        if name not in names():
-            raise InputError(
-                f"--backends: unknown backend {shown(name)}{near(name, names()) or f'; there are {listed(names())}'}"
-            )
+        backend, stroke, algorithm = name.partition("/")
+        if backend not in names():
+            hint = near(backend, names()) or f"; there are {listed(names())}"
+            raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
+        possible = [word for word in algorithms_of(backend) if ALGORITHMS[word].stepped and ALGORITHMS[word].own]
+        if stroke and algorithm not in possible:
+            hint = near(algorithm, possible) or (f"; there are {listed(possible)}" if possible else "")
+            raise InputError(f"--backends: {backend} cannot be asked at poses with algorithm {shown(algorithm)}{hint}")
     if len(chosen) < 2:
         raise InputError("--backends: two backends at least, such as fcl,pybullet")
     return chosen
@@ -116,7 +122,7 @@ def _open(path: str) -> Any:
 
 
 def _keep(found: list[tuple[str, tuple[str, str], str, dict[str, Any]]], chosen: str | None) -> None:
-    """Into the database. One that nobody asked for and that cannot be used costs a warning, not the comparison."""
+    """Into the database. One that was not asked for and cannot be used costs a warning, not the comparison."""
     import shlex
     import sys
 
@@ -176,15 +182,15 @@ def _print(found: Comparison) -> None:
     for case in found.cases + found.shared:
         print(_sentence(case))
     for failure in found.failures:
-        print(f"{failure.backend} failed at {failure.pose} (call {failure.call}): {failure.reason}")
+        print(f"{failure.backend} failed at {failure.pose} (call {failure.query_index}): {failure.reason}")
 
 
 def _sentence(case: Case) -> str:
     truth = case.judgement
     state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
-    verb = "are both" if " and " in case.wrong else "is"
+    verb = "are both" if case.both_wrong else "is"
     i, j = case.bodies
     return (
-        f"{case.wrong} {verb} wrong: at {case.pose.name} (call {case.call}) bodies {i} and {j} {state}, "
+        f"{case.wrong} {verb} wrong: at {case.pose.name} (call {case.query_index}) bodies {i} and {j} {state}, "
         f"proven by a {truth.certificate['kind']}"
     )

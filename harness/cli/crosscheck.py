@@ -15,22 +15,24 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from harness.backends.registry import missing
+from harness.backends.registry import packages
+from harness.backends.statement import missing
 from harness.compare.comparison import compare
 from harness.compare.document import Reduced, document, reduced, shown_case
-from harness.compare.flight import fly_both
-from harness.compare.hard import hard_poses
+from harness.compare.free_running import run_both
+from harness.compare.hard_poses import hard_poses
 from harness.compare.outcome import Comparison
 from harness.compare.poses import PoseSet, flown
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
+from harness.runner.scene_of_point import SceneSizeError, build_scene
 from harness.runner.servers import mesh_of
-from harness.runner.setting import SceneSizeError, build_scene
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.vocabulary import MethodName
 
 DEFAULT = ("fcl", "pybullet")
 
@@ -44,8 +46,8 @@ class Extent:
     Parameters
     ----------
     verdicts : of a scene as it flies, about; None for every frame
-    every : ask about every so manieth pose at first contact
-    flown : frames of a flight with hits, at the most; None for all
+    every : of the poses at first contact, ask about every n-th
+    flown : frames of a free run, at the most; None for all
     """
 
     verdicts: int | None
@@ -76,9 +78,10 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[t
     InputError
         If one was chosen that is not installed, or fewer than two are left.
     """
-    named = tuple(dict.fromkeys(point.engine.backend for point in experiment.points))
+    methods = [MethodName.of(point.parameters) for point in experiment.points]
+    named = tuple(dict.fromkeys(method.short for method in methods if method.stepped))
     wanted = chosen or (named if len(named) > 1 else DEFAULT)
-    lacking = {name: why for name in wanted if (why := missing(name)) is not None}
+    lacking = {name: why for name in wanted if (why := missing(name.partition("/")[0])) is not None}
     if chosen and lacking:
         raise InputError("\n".join(lacking.values()))
     left = tuple(name for name in wanted if name not in lacking)
@@ -96,14 +99,14 @@ def cross_check(
 ) -> Iterator[tuple[tuple[str, str], Comparison]]:
     """Every two backends with what was found of them."""
     for pair in combinations(names, 2):
-        found = compare(_settings(experiment, meshes, extent), pair, progress)
+        found = compare(_pose_sets(experiment, meshes, extent), pair, progress)
         free = next((point for point in experiment.points if point.motion.response != "none"), None)
         if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
             motion = free.motion
             frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
             progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
             found.add(
-                fly_both(
+                run_both(
                     scene, pair, frames=frames, dt=motion.dt, response=motion.response, restitution=motion.restitution
                 )
             )
@@ -122,18 +125,18 @@ def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict
     return document(found, rows, {}) | {
         "title": experiment.title,
         "shown": [shown_case(row) for row in distinct.values()],
-        "versions": package_versions(),
+        "versions": package_versions(packages()),
     }
 
 
 def key_of(experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent) -> str:
     """Of two comparisons with the same key the second would find nothing new."""
     points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
-    content = json.dumps([points, pair, repr(extent), package_versions()])
+    content = json.dumps([points, pair, repr(extent), package_versions(packages())])
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def _settings(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterator[PoseSet]:
+def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterator[PoseSet]:
     """What the experiment's points fly through, each scene once; then the hard poses of every shape of a mesh."""
     seen = set()
     for point in experiment.points:

@@ -1,4 +1,4 @@
-"""Compare two sweeps: which points got faster or slower beyond the noise floor, which counted or ended otherwise.
+"""Say how two sweeps differ: which points are slower or faster beyond the noise, which counted or ended otherwise.
 
 Without numbers, the newest sweep and the newest before it that measured the same points; with one, that and the newest.
 """
@@ -8,10 +8,13 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.streams import speaks_unicode
+
 if TYPE_CHECKING:
-    from harness.report.comparison import Comparison, PointChange
+    from harness.report.sweeps.difference import Difference, PointDifference
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,11 +34,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from harness.report.comparison import compare
+    from harness.report.sweeps.difference import difference
 
-    found = compare(arguments.db, arguments.before, arguments.after)
+    found = difference(arguments.db, arguments.before, arguments.after)
     if arguments.json:
-        print(json.dumps(_document(found), ensure_ascii=False, allow_nan=False))
+        print(json.dumps(_document(found), ensure_ascii=not speaks_unicode(sys.stdout), allow_nan=False))
     else:
         _say(found)
     failed = ("slower" in arguments.fail_on and found.counts["slower"]) or (
@@ -44,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _say(found: Comparison) -> None:
+def _say(found: Difference) -> None:
     for word, sweep in (("before", found.before), ("after", found.after)):
         print(f"{word:6}  sweep {sweep.id}, {sweep.started}: {sweep.command}")
     for point in found.points:
@@ -61,7 +64,7 @@ def _say(found: Comparison) -> None:
     )
 
 
-def _told(point: PointChange) -> list[str]:
+def _told(point: PointDifference) -> list[str]:
     """What is different about a point; nothing where it is the same."""
     told = []
     if point.pace in ("slower", "faster"):
@@ -75,7 +78,7 @@ def _told(point: PointChange) -> list[str]:
     return told
 
 
-def _document(found: Comparison) -> dict[str, Any]:
+def _document(found: Difference) -> dict[str, Any]:
     return {
         "before": {"sweep": found.before.id, "started": found.before.started, "commit": found.before.commit},
         "after": {"sweep": found.after.id, "started": found.after.started, "commit": found.after.commit},

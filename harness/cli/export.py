@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.streams import speaks_unicode
 from harness.errors import InputError
 
 if TYPE_CHECKING:
@@ -48,7 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.format == "csv":
         text = _csv(runs)
     else:
-        text = _json(runs, tables.experiments(arguments.db), tables.comparisons(arguments.db))
+        unicode = arguments.out is not None or speaks_unicode(sys.stdout)
+        text = _json(runs, tables.experiments(arguments.db), tables.comparisons(arguments.db), unicode)
     if arguments.out is None:
         sys.stdout.write(text)
         return 0
@@ -77,11 +79,14 @@ def _cell(value: Any) -> Any:
 
 
 def _json(
-    runs: Sequence[RunRecord], experiments: Iterable[ExperimentRecord], comparisons: Iterable[ComparisonRecord]
+    runs: Sequence[RunRecord],
+    experiments: Iterable[ExperimentRecord],
+    comparisons: Iterable[ComparisonRecord],
+    unicode: bool,
 ) -> str:
-    """One document, with what backends were held against each other where they were.
+    """One document, with the comparisons of backends where there are any.
 
-    JSON has no infinity and nothing that is not a number: such a metric is null.
+    JSON has neither infinity nor NaN: such a metric is null.
     """
     listed = list(experiments)
     document = {
@@ -99,12 +104,12 @@ def _json(
         "claims": [_verdict(experiment.name, row) for experiment in listed for row in experiment.claims],
         "expectations": [_verdict(experiment.name, row) for experiment in listed for row in experiment.expectations],
     }
-    held = [
+    compared = [
         {"experiment": found.experiment, "backends": list(found.backends), "found": found.document}
         for found in comparisons
     ]
-    document |= {"comparisons": held} if held else {}
-    return json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    document |= {"comparisons": compared} if compared else {}
+    return json.dumps(document, ensure_ascii=not unicode, allow_nan=False, indent=1) + "\n"
 
 
 def _verdict(experiment: str, row: VerdictRow) -> dict[str, Any]:

@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print what there is to choose from."""
+    """Print the experiments, backends, algorithms and metrics that there are."""
     import json
 
     if arguments.schema:
@@ -78,29 +78,18 @@ def _experiment_line(row: dict[str, Any]) -> str:
 
 def _backends() -> list[dict[str, Any]]:
     """Every declared backend: why it is missing and what brings it, or what it says of itself."""
-    from harness.backends.registry import available, install_command
+    from harness.backends.registry import install_command, names
+    from harness.backends.statement import statement
 
     rows = []
-    for name, why in available().items():
-        row: dict[str, Any] = {"name": name, "missing": _one_line(why), "install": install_command(name)}
-        rows.append(row | (_stated(name) if why is None else {}))
+    for name in names():
+        said = statement(name)
+        row: dict[str, Any] = {"name": name, "missing": said.missing, "install": install_command(name)}
+        if said.missing is None:
+            row |= {"shapes": list(said.tolerance), "tolerance": dict(said.tolerance), "units": said.units or None}
+            row |= {"precision": said.precision or None, "approximations": dict(said.approximations)}
+        rows.append(row)
     return rows
-
-
-def _stated(name: str) -> dict[str, Any]:
-    from harness.backends.protocol import approximations, precision, units
-    from harness.backends.registry import create
-    from harness.errors import InputError
-
-    try:
-        backend = create(name)
-        bands = {shape: float(backend.tolerance(shape)) for shape in backend.shapes}
-    except InputError as error:
-        return {"missing": _one_line(str(error))}
-    except Exception as error:  # a plugin may fail in any way
-        return {"missing": _one_line(f"{type(error).__name__}: {error}")}
-    said = {"units": units(backend) or None, "precision": precision(backend) or None}
-    return {"shapes": list(backend.shapes), "tolerance": bands, **said, "approximations": dict(approximations(backend))}
 
 
 def _backend_lines(row: dict[str, Any]) -> list[tuple[str, str]]:
@@ -112,10 +101,6 @@ def _backend_lines(row: dict[str, Any]) -> list[tuple[str, str]]:
     notes += [f"units: {row['units']}"] if row["units"] else []
     notes += row["approximations"].values()
     return [(row["name"], f"installed; {bands}"), *(("", note) for note in notes)]
-
-
-def _one_line(text: str | None) -> str | None:
-    return None if text is None else " ".join(text.split())
 
 
 def _metrics() -> list[dict[str, Any]]:

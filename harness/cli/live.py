@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from harness.backends import registry
+from harness.cli.interruption import heed
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.experiment.leaves import LEAVES
@@ -19,17 +20,17 @@ from harness.experiment.load import load_text
 from harness.replay.document import document
 from harness.replay.live import LiveServer
 from harness.replay.page import Setting, live_page
+from harness.runner.scene_of_point import derived_parameters
 from harness.runner.servers import Servers, mesh_of, task_of
-from harness.runner.setting import derived_parameters
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
 from harness.vocabulary import ALGORITHMS
 
-# More than this is counted and timed, but not shown: a browser would choke on it.
+# Larger scenes are counted and timed, but not shown: a browser could not draw them smoothly.
 MOST_BODIES = 5000
 MOST_HITS = 200_000
 COLUMNS = (
-    *("algorithm", "backend", "shape", "bodies", "crowding", "speed", "body hits", "wall hits", "pair tests"),
+    *("algorithm", "backend", "shape", "bodies", "box ratio", "speed", "body hits", "wall hits", "pair tests"),
     *("CPU time, ms", "simulated s per s"),
 )
 
@@ -37,14 +38,14 @@ Meshes = Mapping[Path, Mesh]
 
 
 def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -> int:
-    """Serve the live page until Ctrl-C.
+    """Serve the live page until Ctrl-C, or SIGTERM.
 
     Parameters
     ----------
     experiment, meshes : loaded and opened; its first point is what the page begins with
     show : opens an address
     """
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell has started it in the background
+    heed(signal.SIGINT)  # also where a shell has started it in the background
     settings = _settings(experiment, meshes)
     with Servers() as servers:
 
@@ -61,7 +62,7 @@ def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -
 
 
 def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
-    """What can be changed, with the values of the first point."""
+    """The settings of the page, with the values of the first point."""
     point = experiment.points[0]
     leaves = point.parameters
     ratio = leaves["box_ratio"] or _mean_size(point) ** 2 / derived_parameters(point, None)["box_side"] ** 2
@@ -70,7 +71,7 @@ def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
         Setting("algorithm", "algorithm", leaves["algorithm"], tuple(ALGORITHMS)),
         Setting("backend", "backend", leaves["backend"], tuple(registry.names())),
         Setting("shape", "shape", leaves["shape"], shapes),
-        Setting("box_ratio", "crowding (size / side)²", f"{ratio:.4g}"),
+        Setting("box_ratio", "box ratio (size / side)²", f"{ratio:.4g}"),
     ]
     if point.scene.bodies is None:  # bodies that are given one by one have their number and speeds
         found.insert(3, Setting("count", "number of bodies", str(leaves["count"]), inputmode="numeric"))
@@ -87,17 +88,17 @@ def _mean_size(point: Point) -> float:
 def _answer(
     experiment: Experiment, meshes: Meshes, servers: Servers, first: Mapping[str, str], asked: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Run the first point with what was changed: measured, then recorded."""
+    """Run the first point with the changed settings: once measured, once recorded."""
     changed = {name: text for name, text in asked.items() if name in first and text.strip() != first[name]}
     try:
-        now = load_text(_alone(experiment), experiment.path, changed)
+        now = load_text(_first_point_alone(experiment), experiment.path, changed)
     except InputError as error:
         return {"error": " ".join(_sentence(problem.message) for problem in error.problems)}
     point = now.points[0]
     report = servers.run(*task_of(now, point, meshes))
     if report.status != "ok":
         return {"error": _sentence(f"the run did not come to its end ({report.status}): {report.reason}")}
-    answer: dict[str, Any] = {"said": _said(report), "row": _row(point, mesh_of(now, point, meshes), report)}
+    answer: dict[str, Any] = {"said": _summary(report), "row": _row(point, mesh_of(now, point, meshes), report)}
     bodies = point.scene.count if point.scene.bodies is None else len(point.scene.bodies)
     if (bodies or 0) > MOST_BODIES or report.metrics["events"] > MOST_HITS:
         answer["said"] += f" Too much to show: at most {MOST_BODIES} bodies and {MOST_HITS} hits are."
@@ -110,8 +111,8 @@ def _answer(
     return answer
 
 
-def _alone(experiment: Experiment) -> str:
-    """An experiment of the first point alone, as text."""
+def _first_point_alone(experiment: Experiment) -> str:
+    """The text of an experiment whose one point is the first of this one."""
     file: dict[str, Any] = {"title": experiment.title, "scene": {}, "motion": {}, "engine": {}}
     for name, value in experiment.points[0].parameters.items():
         if value is not None:
@@ -122,12 +123,14 @@ def _alone(experiment: Experiment) -> str:
 
 
 def _sentence(message: str) -> str:
-    said = message.removeprefix("--set ")  # that is how the settings are handed on; nobody has typed it
+    said = message.removeprefix(
+        "--set "
+    )  # settings are passed on as overrides, which the user of the page has not typed
     text = said if said != message else said[0].upper() + said[1:]
     return text if text.endswith(".") else f"{text}."
 
 
-def _said(report: Report) -> str:
+def _summary(report: Report) -> str:
     found = report.metrics
     hits = f"{found['pair_hits']:.0f} hits between bodies and {found['box_hits']:.0f} at walls"
     sentences = [f"{hits}, found in {_milliseconds(report)} ms of CPU time."]

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from harness.cli.interruption import exit_code, heeding_signals
+from harness.cli.streams import reliable_streams
 from harness.errors import InputError
 
 COMMANDS = {
     "sweep": "run experiments and keep every measurement",
     "report": "turn the measurements into pages",
     "diff": "compare two sweeps: what got slower, what changed",
-    "compare": "hold backends against each other and against exact arithmetic",
+    "compare": "compare backends with each other and with exact arithmetic",
     "trace": "print the hits of one run",
     "plan": "print what each run does, what it leaves out, and why",
     "view": "replay a run in the browser, or try settings live",
@@ -26,39 +27,61 @@ COMMANDS = {
 }
 
 
+_CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line.
 
     Returns
     -------
     int
-        Exit code: 0 done, 1 an expectation or a run failed, 2 the input was wrong, 130 interrupted.
+        Exit code: 0 done, 1 an expectation or a run failed, 2 the input was wrong, 130 or 143 interrupted.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    parser = _parser()
-    if not words or words[0] not in COMMANDS:
-        parser.parse_args(words)
-        parser.print_help()
-        return 0 if words else 2
-    name = words[0]
-    module = import_module(f"harness.cli.{name}")
-    command = argparse.ArgumentParser(
-        prog=f"harness {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    module.add_arguments(command)
+    if arguments is not None:
+        with heeding_signals():
+            return _run(words)
+    # the process is ours: so are its streams
+    with reliable_streams() as output:
+        with heeding_signals(last=True):
+            try:
+                code = _run(words)
+            except SystemExit as ended:  # of the parser: 0 after --help, 2 where it was not understood
+                code = int(ended.code or 0)
+        output.flush()
+        if output.lost is None or isinstance(output.lost, BrokenPipeError):
+            return code  # that a reader has gone (`harness export | head`) changes nothing
+        print(f"standard output took no more: {output.lost.strerror}", file=sys.stderr)
+        return code or 1
+
+
+def _run(words: Sequence[str]) -> int:
     try:
+        parser = _parser()
+        if not words or words[0] not in COMMANDS:
+            parser.parse_args(words)
+            parser.print_help()
+            return 0 if words else 2
+        name = words[0]
+        module = import_module(f"harness.cli.{name}")
+        command = argparse.ArgumentParser(
+            prog=f"harness {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        )
+        module.add_arguments(command)
         return int(module.run(command.parse_args(words[1:])))
     except InputError as error:
         for problem in error.problems:
-            print(problem, file=sys.stderr)
+            print(_one_line(str(problem)), file=sys.stderr)
         return 2
-    except BrokenPipeError:
-        # the reader has gone (`harness export | head`); nothing is left to say, not even at exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interruption:
         print("interrupted", file=sys.stderr)
-        return 130
+        return exit_code(interruption)
+
+
+def _one_line(text: str) -> str:
+    """Without the letters, as file names may hold, that would end the line or do something to a terminal."""
+    return "".join(letter if letter >= " " and letter not in _CONTROLS else repr(letter)[1:-1] for letter in text)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -80,7 +80,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the action says; wrong input is raised."""
+    """Make, inspect or simplify; wrong input is raised."""
     arguments.act(arguments)
     return 0
 
@@ -162,7 +162,7 @@ def _write(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32], 
 
 
 def _facts(mesh: Mesh) -> dict[str, Any]:
-    """What there is to say of a mesh, in the unit of its file."""
+    """The facts of a mesh, in the unit of its file."""
     from harness.scene.topology import area, topology, volume
 
     about = topology(mesh.faces, len(mesh.vertices))

@@ -11,7 +11,7 @@ from harness.errors import InputError
 
 if TYPE_CHECKING:
     from harness.experiment.experiment import Experiment, Point
-    from harness.motion.plan import Plan
+    from harness.methods.stages import Plan
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,19 +27,20 @@ def run(arguments: argparse.Namespace) -> int:
 
     from harness.runner.execute import plan_of
     from harness.runner.preparation import prepare
+    from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import mesh_of
-    from harness.runner.setting import SceneSizeError, build_scene
     from harness.scene.launch import PlacementError
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))
     experiment = experiments[0]
-    try:
-        plans = [
-            (point, plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)))
-            for point in experiment.points
-        ]
-    except (SceneSizeError, PlacementError) as error:
-        raise InputError(f"{arguments.path}: {error}") from error
+    plans = []
+    for point in experiment.points:
+        try:
+            scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
+        except (SceneSizeError, PlacementError) as error:
+            leaf = "count" if point.scene.bodies is None else "bodies"
+            raise InputError([experiment.leaf_problem(leaf, point.parameters[leaf], str(error))]) from error
+        plans.append((point, plan_of(point, scene)))
     if arguments.json:
         runs = [
             {
@@ -70,13 +71,13 @@ def _show(experiment: Experiment, plans: Sequence[tuple[Point, Plan]]) -> None:
             console.print(Text(f"  WARNING   {warning}", "bold red"), soft_wrap=True)
         table = Table.grid(padding=(0, 2, 0, 0))
         for stage in plan.stages:
-            fate = "keeps" if stage.kept else "leaves out"
+            decision = "keeps" if stage.kept else "leaves out"
             if console.is_terminal:
                 style = "" if stage.kept else "dim"
-                shown = Text(fate, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
+                shown = Text(decision, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
                 table.add_row("", *shown, Text(stage.why, style))
             else:
-                print(f"  {fate:10}  {stage.name:13}  {stage.why}")
+                print(f"  {decision:10}  {stage.name:13}  {stage.why}")
         if console.is_terminal:
             console.print(table)
 
@@ -90,11 +91,11 @@ def _alike(plans: Sequence[tuple[Point, Plan]]) -> Iterable[tuple[Plan, list[Poi
 
 
 def _named(experiment: Experiment, points: Sequence[Point]) -> str:
-    """The points by the values of what varies."""
+    """The points, by the values of the leaves that vary."""
     from harness.experiment.messages import flow
 
-    told = [
+    varied = [
         f"{leaf} {', '.join(dict.fromkeys(flow(point.parameters[leaf]) for point in points))}"
         for leaf in experiment.swept
     ]
-    return f": {'; '.join(told)}" if told else ""
+    return f": {'; '.join(varied)}" if varied else ""

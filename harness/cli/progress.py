@@ -1,6 +1,6 @@
-"""How a sweep goes, on standard error: two lines that renew themselves on a terminal, plain lines elsewhere.
+"""The progress of a sweep, on standard error: two lines that are redrawn on a terminal, plain lines elsewhere.
 
-It is written between runs and never during one, by no thread of its own: what draws would disturb what is timed.
+It is written between runs and never during one, and by no thread of its own: drawing would disturb what is timed.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from time import monotonic
 from typing import TYPE_CHECKING, Literal
 
-from harness.runner.estimate import spoken
+from harness.runner.estimate import duration_text
 
 if TYPE_CHECKING:
     from harness.runner.estimate import Estimate
@@ -23,11 +23,11 @@ _DRAW_EVERY = 0.2  # s
 
 
 class Progress:
-    """Watches a sweep (see `harness.runner.sweep.Watcher`). A context.
+    """Prints the progress of a sweep (see `harness.runner.sweep.ProgressListener`). A context.
 
     Parameters
     ----------
-    detail : quiet says nothing but what went wrong, verbose has a line a run
+    detail : quiet prints only failures, verbose a line a run
     """
 
     def __init__(self, detail: Detail = "normal") -> None:
@@ -56,7 +56,7 @@ class Progress:
         self._bars.stop()
 
     def begin(self, jobs: Sequence[Job], estimate: Estimate) -> None:
-        """Say how many runs there are to do and how long they may take."""
+        """Print how many runs there are to do and how long they may take."""
         self._estimate, self._total = estimate, len(jobs)
         self._left = dict.fromkeys(jobs)
         self._sweep = self._bars.add_task("sweep", total=len(jobs), said="")
@@ -67,21 +67,21 @@ class Progress:
         self._bars.start()
 
     def before(self, job: Job) -> None:
-        """Name the run that begins."""
+        """Show the run that begins."""
         if self._drawn and monotonic() >= self._next:
             expected = self._estimate.of(job)
-            said = f"about {spoken(expected)}" if expected is not None else ""
+            said = f"about {duration_text(expected)}" if expected is not None else ""
             self._bars.update(self._run, description=name_of(job), said=said)
             self._draw()
 
     def after(self, job: Job, report: Report) -> None:
-        """Count a run that has ended, and say it if it did not end well."""
+        """Count a run that has ended, and print it if it did not end well."""
         self._left.pop(job, None)
         if report.status != "ok" and not job.control:
             self._line(f"{name_of(job)}: {report.status}: {report.reason}")
         elif self._detail == "verbose":
             seconds = report.conditions.get("seconds")
-            self._line(f"{name_of(job)}: {report.status}{f', {spoken(seconds)}' if seconds is not None else ''}")
+            self._line(f"{name_of(job)}: {report.status}{f', {duration_text(seconds)}' if seconds is not None else ''}")
         if monotonic() < self._next or self._detail == "quiet":
             return
         if self._drawn:
@@ -99,14 +99,14 @@ class Progress:
 
     def _time_left(self, words: str) -> str:
         seconds = self._estimate.left(self._left)
-        return words.format(spoken(seconds)) if seconds is not None and self._left else ""
+        return words.format(duration_text(seconds)) if seconds is not None and self._left else ""
 
     def _line(self, text: str) -> None:
         self._console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def name_of(job: Job) -> str:
-    """A run as people tell it from the others of its experiment."""
+    """A run by what distinguishes it from the others of its experiment: its swept leaves and its repeat."""
     varied = [f"{leaf} {job.point.parameters[leaf]}" for leaf in job.experiment.swept]
     repeat = f"repeat {job.repeat}{', control' if job.control else ''}"
     return f"{job.experiment.name} ({', '.join([*varied, repeat])})"

@@ -1,4 +1,4 @@
-"""Run experiments and keep every measurement. What an earlier sweep has done is not done again.
+"""Run experiments and keep every measurement. A run that an earlier sweep has done is not done again.
 
 Exit code 1 if a run failed or an expectation does not hold, 2 if an experiment or the database is wrong.
 """
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from harness.experiment.experiment import Experiment
     from harness.runner.executor import Executor
-    from harness.runner.schedule import Choice
+    from harness.runner.schedule import RunSelection
     from harness.runner.sweep import Summary
     from harness.scene.mesh import Mesh
     from harness.store.database import Database
@@ -64,41 +64,48 @@ def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
+    from harness.cli.interruption import exit_code
     from harness.cli.progress import Progress
     from harness.runner.preparation import prepare
     from harness.runner.sweep import sweep
     from harness.store.database import Database
 
-    choice = _choice(arguments)
+    selection = _selection(arguments)
     experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
     chosen = [experiment for experiment in experiments if arguments.long or experiment.measure.tier == "default"]
     for left in [experiment.name for experiment in experiments if experiment not in chosen]:
         print(f"{left}: left out, since it is `tier: long`; --long runs it", file=sys.stderr)
     command = shlex.join(["harness", *sys.argv[1:]])
     if arguments.dry_run:
-        _foretell(chosen, meshes, arguments, command, choice)
+        _print_what_would_be_done(chosen, meshes, arguments, command, selection)
         return 0
     progress = Progress("quiet" if arguments.quiet else "verbose" if arguments.verbose else "normal")
     with Database.open(arguments.db) as database, progress:
         try:
             summary = sweep(
-                chosen, meshes, database, command=command, watch=progress, executor=_executor(arguments), choice=choice
+                chosen,
+                meshes,
+                database,
+                command=command,
+                progress=progress,
+                executor=_executor(arguments),
+                selection=selection,
             )
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interruption:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
-            return 130
+            return exit_code(interruption)
         compared = _compare(chosen, meshes, database, command, arguments)
-    _say(summary, arguments)
+    _print_outcome(summary, arguments)
     for line in compared:
         print(line)
     return 1 if summary.failed else 0
 
 
-def _choice(arguments: argparse.Namespace) -> Choice:
+def _selection(arguments: argparse.Namespace) -> RunSelection:
     from harness.experiment.document import read_value
     from harness.experiment.leaves import DERIVED, LEAVES
     from harness.experiment.messages import near, shown
-    from harness.runner.schedule import Choice
+    from harness.runner.schedule import RunSelection
 
     only: dict[str, list[Any]] = {}
     problems = []
@@ -109,10 +116,13 @@ def _choice(arguments: argparse.Namespace) -> Choice:
         elif leaf not in (*LEAVES, *DERIVED):
             problems.append(Problem(f"--only {text}: unknown leaf {shown(leaf)}{near(leaf, (*LEAVES, *DERIVED))}"))
         else:
-            only.setdefault(leaf, []).append(read_value(value))
+            try:
+                only.setdefault(leaf, []).append(read_value(value))
+            except InputError as error:
+                problems += [Problem(f"--only {text}: {problem.message}") for problem in error.problems]
     if problems:
         raise InputError(problems)
-    return Choice(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
+    return RunSelection(retry=arguments.retry == "failed", fresh=arguments.fresh, only=only)
 
 
 def _executor(arguments: argparse.Namespace) -> Executor | None:
@@ -132,7 +142,7 @@ def _compare(
     command: str,
     arguments: argparse.Namespace,
 ) -> list[str]:
-    """Hold backends against each other where an experiment says so, unless it was done; what was found, a line each.
+    """Compare backends where an experiment asks for it, unless that was done; the outcome, a line each pair.
 
     A library that is wrong is a finding of the report, not a failure of the sweep; `harness compare` exits 1.
     """
@@ -181,30 +191,30 @@ def _address(text: str) -> str:
     return text
 
 
-def _foretell(
+def _print_what_would_be_done(
     experiments: Sequence[Experiment],
     meshes: Mapping[Path, Mesh],
     arguments: argparse.Namespace,
     command: str,
-    choice: Choice,
+    selection: RunSelection,
 ) -> None:
-    """What a sweep would do. Nothing is written, and no database is made."""
+    """Print what a sweep would do. Nothing is written, and no database is made."""
     import os
     from contextlib import nullcontext
 
-    from harness.runner.estimate import START_UP, spoken
+    from harness.runner.estimate import START_UP, duration_text
     from harness.runner.sweep import work_of
     from harness.store.history import history_of
 
     there = os.path.exists(arguments.db) and os.path.getsize(arguments.db) > 0
     with history_of(arguments.db) if there else nullcontext() as history:
-        work = work_of(experiments, meshes, history, command=command.replace(" --dry-run", ""), choice=choice)
+        work = work_of(experiments, meshes, history, command=command.replace(" --dry-run", ""), selection=selection)
     jobs, kept = work.schedule
     rows = []
     for experiment in experiments:
         mine = [job for job in jobs if job.experiment is experiment]
         seconds = work.estimate.left(mine)
-        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else spoken(seconds)])
+        rows.append([experiment.name, str(len(mine)), "unknown" if seconds is None else duration_text(seconds)])
     _print_table(["experiment", "runs to do", "time"], rows)
     backends = {job.point.engine.backend for job in jobs}
     total = work.estimate.left(jobs)
@@ -212,27 +222,29 @@ def _foretell(
     if not jobs:
         time = "nothing to do"
     elif total is None:
-        time = "no run like these was ever done, so there is no estimate of time"
+        time = "no such run was done before, so there is no estimate of time"
     else:
-        time = f"about {spoken(total + START_UP * len(backends))}, from earlier runs of {known} of them"
+        time = f"about {duration_text(total + START_UP * len(backends))}, from earlier runs of {known} of them"
     for why in work.lacking:
         print(f"points passed over: {why}")
     print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
-def _say(summary: Summary, arguments: argparse.Namespace) -> None:
+def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
-    from harness.runner.estimate import spoken
+    import shlex
+
+    from harness.runner.estimate import duration_text
 
     if not arguments.quiet and summary.experiments:
         rows = []
         for name, statuses in summary.experiments.items():
             failed = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()) if status != "ok")
-            rows.append([name, str(statuses.total()), failed or "none", spoken(summary.seconds[name])])
+            rows.append([name, str(statuses.total()), failed or "none", duration_text(summary.seconds[name])])
         _print_table(["experiment", "runs", "failed", "time"], rows)
     counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
-    told = f" ({counts})" if counts else ""
-    print(f"{summary.done.total()} runs done{told}, {summary.kept.total()} kept from before")
+    by_status = f" ({counts})" if counts else ""
+    print(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
     if summary.controls:
         print(f"{summary.controls} of them done twice, as a control of the noise")
     failed_before = summary.kept.total() - summary.kept["ok"]
@@ -242,7 +254,7 @@ def _say(summary: Summary, arguments: argparse.Namespace) -> None:
         print(f"points passed over: {why}")
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
-    option = "" if arguments.db == DATABASE else f" --db {arguments.db}"
+    option = "" if arguments.db == DATABASE else f" --db {shlex.quote(arguments.db)}"
     print(f"Now `harness report{option}` turns {arguments.db} into pages.")
 
 

@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """A line on standard output for every sound experiment; the faults of the others are raised together."""
+    """Print a line for every valid experiment; the problems of the others are raised together."""
     from harness.runner.preparation import examine
 
     experiments, _, problems = examine(arguments.paths, overrides_of(arguments))

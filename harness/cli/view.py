@@ -1,7 +1,7 @@
 """Replay a run in the browser: of the first point, where a file sweeps.
 
-With --live, a page on this machine on which count, crowding, speed, algorithm, backend and shape can be changed: each
-change is run at once, shown, and its hits and costs are listed.
+With --live, a page on this machine on which count, box ratio, speed, algorithm, backend and shape can be changed: each
+change is run at once and shown, and its hits and costs are listed.
 """
 
 from __future__ import annotations
@@ -68,11 +68,9 @@ def _writing(path: Path) -> Iterator[None]:
 
 
 def _facts(experiment: Experiment, metrics: dict[str, float]) -> list[tuple[str, str]]:
-    from harness.measure.metrics import METRICS
     from harness.replay.facts import facts
 
-    counters = {name: value for name, value in metrics.items() if METRICS[name].kind == "counter"}
-    return facts(experiment.points[0].parameters, counters)
+    return facts(experiment.points[0].parameters, metrics)
 
 
 def _open(address: str) -> None:

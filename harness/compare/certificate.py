@@ -1,4 +1,4 @@
-"""What the judge says of two bodies, and the proof it hands out, in the form that JSON holds."""
+"""The judge's verdict on two bodies and its proof, in the form that JSON holds."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Judgement:
     Parameters
     ----------
     touching : closed sets, so that a gap of exactly 0 touches
-    gap : m, between the surfaces; negative if they overlap, by the shortest way out. Of overlapping meshes, which are
-        surfaces, at least as deep
+    gap : m, between the surfaces; negative if they overlap, by the penetration depth. Of overlapping meshes,
+        which are surfaces, at least as deep
     certificate : the proof; numbers that only a fraction can hold are text
     contained : a mesh lies wholly inside the other, and the surfaces do not touch
     """

@@ -61,6 +61,11 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
     Parameters
     ----------
     first, second : integer points, at least one each
+
+    >>> meet([(0, 0, 0)], [(2, 1, 0)])
+    Plane(normal=(-2, -1, 0))
+    >>> meet([(0, 0, 0), (2, 0, 0)], [(1, 0, 0)])
+    CommonPoint(first=((0, 2), (1, 2)), second=((0, 2), (0, 2)))
     """
     rough, other_rough = _rough(first), _rough(second)
     simplex = [(0, 0)]

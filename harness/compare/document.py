@@ -1,20 +1,20 @@
-"""What a comparison has found, as JSON holds it: for `--json`, and for the database."""
+"""A comparison as JSON, for `--json` and for the database."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from harness.compare.cross_section import cross_section
 from harness.compare.minimise import minimise
 from harness.compare.outcome import Case, Comparison, Failure
 from harness.compare.reproduction import text_of
-from harness.compare.section import section
-from harness.compare.tally import Approximation, Counts, GapAxis
+from harness.compare.tally import Approximation, Counts, GapHistogram
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """A case, and what was made of it.
+    """A case, and the smaller one that was made of it.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Reduced:
     @property
     def name(self) -> str:
         """Of a file for it, without number and suffix."""
-        return "-".join(self.case.backends)
+        return "-".join(self.case.backends).replace("/", "-")
 
 
 def reduced(found: Comparison, mesh_name: dict[int, str], most: int) -> list[Reduced]:
@@ -74,16 +74,16 @@ def document(found: Comparison, rows: list[Reduced], files: dict[int, str]) -> d
         "shared": cases[real:],
         "checked": [_counts(checked) for checked in found.checked],
         "approximations": [_approximation(one) for one in found.approximations],
-        "gaps": [_gaps(axis) for axis in found.gaps],
+        "gaps": [_gaps(histogram) for histogram in found.gaps],
         "flights": [asdict(flight) for flight in found.flights],
         "unsupported": found.unsupported,
     }
 
 
 def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
-    """A wrong verdict; `depends_on_order` tells one that a single question does not show, and `frame` where it was."""
+    """A wrong verdict; `depends_on_order` marks one that a single query of the same pose does not show."""
     case = row.case
-    where = {"pose": case.pose.name, "call": case.call, "touching": case.judgement.touching}
+    where = {"pose": case.pose.name, "call": case.query_index, "touching": case.judgement.touching}
     return {
         "backends": list(case.backends),
         "wrong": case.wrong,
@@ -103,7 +103,7 @@ def failure_row(failure: Failure) -> dict[str, Any]:
         "wrong": failure.backend,
         "bodies": [],
         "gap": None,
-        "certificate": {"kind": "crashed", "pose": failure.pose, "call": failure.call, "reason": failure.reason},
+        "certificate": {"kind": "crashed", "pose": failure.pose, "call": failure.query_index, "reason": failure.reason},
         "file": None,
     }
 
@@ -121,7 +121,7 @@ def shown_case(row: Reduced) -> dict[str, Any]:
     return case_row(row, None) | {
         "shape": best.scene.shape,
         "sizes": [float(sizes[i]), float(sizes[j])],
-        "section": section(best),
+        "section": cross_section(best),
         "minimised": small,
         "text": row.text,
         "mesh": row.mesh,
@@ -136,7 +136,7 @@ def _approximation(one: Approximation) -> dict[str, Any]:
     return _counts(one) | {"false_share": one.false_share, "missed_share": one.missed_share}
 
 
-def _gaps(axis: GapAxis) -> dict[str, Any]:
-    return _counts(axis) | {
-        "counts": {kind: dict(sorted(decades.items())) for kind, decades in sorted(axis.counts.items())}
+def _gaps(histogram: GapHistogram) -> dict[str, Any]:
+    return _counts(histogram) | {
+        "counts": {kind: dict(sorted(decades.items())) for kind, decades in sorted(histogram.counts.items())}
     }

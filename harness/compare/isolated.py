@@ -2,35 +2,35 @@
 
 from __future__ import annotations
 
-import ctypes
-import faulthandler
-import multiprocessing
-import os
-import signal
-import sys
+import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from multiprocessing.connection import Connection
+from functools import partial
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 
 from harness.arrays import Pairs
 from harness.backends import registry
-from harness.backends.protocol import approximations, own_hulls, own_hulls_tolerance
+from harness.backends.protocol import Backend, approximations, own_hulls, own_hulls_tolerance
+from harness.child_process import Channel, Child
 from harness.compare.poses import Pose
 from harness.errors import InputError
+from harness.methods.at_poses import AtPoses
 from harness.scene.hull import Hull
 from harness.scene.scene import Scene
+from harness.vocabulary import MethodName, Shape
 
-PATIENCE = 10.0
+ANSWER_SECONDS = 10.0
 """s for an answer, by which a backend that hangs is told from a slow one."""
-_PR_SET_PDEATHSIG = 1
+# As many times as long for loading the scene.
+_LOADING = 10
 
 
 @dataclass(frozen=True)
 class Facts:
-    """What a loaded backend says of itself for the shape of the scene.
+    """What a loaded backend declares of itself for the shape of the scene.
 
     Parameters
     ----------
@@ -47,27 +47,31 @@ class Facts:
 
 
 class UnusableError(Exception):
-    """The backend cannot take the scene at all; says why."""
+    """The backend cannot take the scene at all, and why."""
 
 
 class Isolated:
-    """One backend with one scene. A context: leaving it ends the process.
+    """What is compared under one name, with one scene. A context: leaving it ends the process.
 
     Parameters
     ----------
-    name : of the backend
+    name : of what answers; `_create` makes of it what is asked, and nothing else looks into it
     scene : Scene
-    patience : s for an answer
+    timeout : s for an answer
+
+    Attributes
+    ----------
+    facts : what it declares of itself, once entered
 
     Raises
     ------
     UnusableError
-        On entering, if the backend cannot load the scene.
+        On entering, if it cannot load the scene.
     """
 
-    def __init__(self, name: str, scene: Scene, patience: float = PATIENCE) -> None:
-        self._name, self._scene, self._patience = name, scene, patience
-        self._process: multiprocessing.process.BaseProcess | None = None
+    def __init__(self, name: str, scene: Scene, timeout: float = ANSWER_SECONDS) -> None:
+        self._name, self._scene, self._timeout = name, scene, timeout
+        self._child: Child | None = None
 
     def __enter__(self) -> Isolated:
         self.facts = self._start()
@@ -76,69 +80,54 @@ class Isolated:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stop()
+        self._end()
 
     def pairs(self, pose: Pose) -> Pairs | str:
         """The touching pairs at a pose, or how the backend failed at it; after a failure it is started afresh."""
-        if self._process is None:
-            self._start()
-        try:
-            self._channel.send((pose.positions, pose.quaternions))
-            if not self._channel.poll(self._patience):
-                self._stop()
-                return f"no answer within {self._patience:g} s"
-            answer: Pairs | str = self._channel.recv()
-        except (EOFError, OSError):
-            return self._post_mortem()
-        return answer
+        if self._child is None:
+            try:
+                self._start()
+            except UnusableError as error:
+                return str(error)
+        assert self._child is not None, "it has been started"
+        answer = self._child.ask(pickle.dumps((pose.positions, pose.quaternions)), self._timeout)
+        if isinstance(answer, bytes):
+            found: Pairs | str = pickle.loads(answer)
+            return found
+        ending, self._child = self._child.end(), None
+        return f"no answer within {self._timeout:g} s" if answer == "timeout" else ending.instead_of("an answer")
 
     def _start(self) -> Facts:
-        context = multiprocessing.get_context("fork")
-        self._channel, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, self._name, self._scene), daemon=True)
-        self._process.start()
-        theirs.close()
-        if not self._channel.poll(10 * self._patience):
-            self._stop()
-            raise UnusableError("it did not load the scene in time")
+        self._child = Child.fork(partial(_serve, self._name, self._scene))
         try:
-            loaded: Facts | str = self._channel.recv()
-        except EOFError:
-            raise UnusableError(f"loading the scene, it {self._post_mortem()}") from None
-        if isinstance(loaded, str):
-            self._stop()
-            raise UnusableError(loaded)
+            answer = self._child.receive(_LOADING * self._timeout)
+            if answer == "timeout":
+                raise UnusableError("it did not load the scene in time")
+            if not isinstance(answer, bytes):
+                raise UnusableError(f"loading the scene, it {self._child.end().instead_of('an answer')}")
+            loaded: Facts | str = pickle.loads(answer)
+            if isinstance(loaded, str):
+                raise UnusableError(loaded)
+        except BaseException:
+            self._end()
+            raise
         return loaded
 
-    def _stop(self) -> None:
-        if self._process is not None:
-            self._channel.close()
-            self._process.kill()
-            self._process.join()
-            self._process = None
-
-    def _post_mortem(self) -> str:
-        """How a process ended that closed its side without an answer."""
-        assert self._process is not None, "it was asked"
-        self._process.join(1.0)
-        code = self._process.exitcode
-        self._stop()
-        if code is not None and code < 0:
-            return f"ended by signal {-code} ({signal.Signals(-code).name})"
-        return f"ended without an answer, exit code {code}"
+    def _end(self) -> None:
+        if self._child is not None:
+            self._child.end()
+            self._child = None
 
 
-def _serve(channel: Connection, name: str, scene: Scene) -> None:
-    """The process of the backend: load, say what it is, then answer until the other side closes."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    faulthandler.disable()  # it would print the stack of the process that asks
-    nowhere = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):
-        os.dup2(nowhere, stream)
+def _create(name: str, shape: Shape) -> Backend:
+    """What stands behind a name: a method of this program ("fcl/grid"), or a backend's own pipeline ("pybullet")."""
+    return AtPoses(MethodName.read(name, shape)) if "/" in name else registry.create(name)
+
+
+def _serve(name: str, scene: Scene, channel: Channel) -> None:
+    """The process of the backend: load, send the facts, then answer until the parent closes its end."""
     try:
-        backend = registry.create(name)
+        backend = _create(name, scene.shape)
         if scene.shape not in backend.shapes:
             raise InputError(f"it has no shape {scene.shape}")
         backend.load(scene)
@@ -149,21 +138,24 @@ def _serve(channel: Connection, name: str, scene: Scene) -> None:
             own_hulls_tolerance(backend),
         )
     except Exception as error:  # a plugin may fail in any way
-        channel.send(str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}")
+        channel.send(pickle.dumps(str(error) if isinstance(error, InputError) else _told(error)))
         return
-    channel.send(facts)
-    while True:
+    channel.send(pickle.dumps(facts))
+    while (asked := channel.receive()) is not None:
+        positions, quaternions = pickle.loads(asked)
+        answer: Any
         try:
-            positions, quaternions = channel.recv()
-        except (EOFError, OSError):
-            return
-        try:
-            channel.send(_sound(backend.pairs(positions, quaternions), len(positions)))
+            answer = _checked(backend.pairs(positions, quaternions), len(positions))
         except Exception as error:
-            channel.send(f"{type(error).__name__}: {error}")
+            answer = _told(error)
+        channel.send(pickle.dumps(answer))
 
 
-def _sound(pairs: Pairs, count: int) -> Pairs:
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+def _checked(pairs: Pairs, count: int) -> Pairs:
     """The answer, if it is one: pairs i < j of bodies that there are."""
     found = np.asarray(pairs)
     if found.size == 0:

@@ -21,7 +21,7 @@ from harness.compare.surfaces import judge_surfaces
 from harness.scene.mesh import Triangles
 from harness.scene.scene import Scene
 
-# Steps towards the shortest way out of an overlap; each that helps comes strictly nearer, most need two or three.
+# Steps towards the penetration depth; each that helps comes strictly nearer, most overlaps need two or three.
 _MOST_STEPS = 10
 # Directions, and vertices, beyond which not every one is put to every other.
 _MANY, _FEW = 1200, 100
@@ -49,7 +49,7 @@ def judge(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) 
 
 
 def touches(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) -> bool:
-    """Whether bodies i and j touch, as `judge` says it, without how far and why: of hulls a few times quicker."""
+    """Whether bodies i and j touch, as `judge` decides, without gap and proof: of hulls a few times quicker."""
     if scene.shape != "hull":
         return judge(scene, i, j, positions, quaternions).touching
     sizes = scene.bodies.sizes
@@ -86,7 +86,7 @@ def _hulls(first: Placed, faces: Triangles, second: Placed, other_faces: Triangl
 def _depth(
     first: Sequence[Point], faces: Triangles, second: Sequence[Point], other_faces: Triangles, unit: Fraction
 ) -> float:
-    """m, the shortest way out of an overlap: by the normals of all faces, then bettered as edges may need it."""
+    """The penetration depth, m: along the normals of all faces, then improved where edges give a shorter way."""
     one, other = _floats(first, unit), _floats(second, unit)
     normals = np.vstack([-_normals(one, faces), _normals(other, other_faces)])
     if len(normals) > _MANY:

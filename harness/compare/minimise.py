@@ -1,4 +1,4 @@
-"""The smallest scene in which a backend is still wrong: as few bodies as do it, with numbers as round as do it."""
+"""The smallest scene in which a backend is still wrong: as few bodies, and numbers as round, as still show it."""
 
 from __future__ import annotations
 

@@ -1,13 +1,13 @@
-"""What a comparison has found: counts, and every case in which somebody is wrong, with the proof."""
+"""What a comparison has found: counts, and every wrong verdict with its proof."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 from harness.compare.certificate import Judgement
+from harness.compare.free_run_pair import FreeRunPair
 from harness.compare.poses import Pose
-from harness.compare.side_by_side import SideBySide
-from harness.compare.tally import Approximation, Backends, Checked, GapAxis, Tally, together
+from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally, merge
 from harness.scene.scene import Scene
 
 
@@ -22,26 +22,31 @@ class Case:
     bodies : i < j
     judgement : what is true, with the proof
     scene, pose : where; the hulls of the scene are those both backends were held against
-    call : the how-manieth question of this scene it was, from 1
+    query_index : which query of this scene it was, from 1
     """
 
-    backends: Backends
+    backends: NamePair
     wrong: str
     bodies: tuple[int, int]
     judgement: Judgement
     scene: Scene
     pose: Pose
-    call: int
+    query_index: int
+
+    @property
+    def both_wrong(self) -> bool:
+        """Whether both agree on what is wrong."""
+        return self.wrong not in self.backends
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A backend that crashed, hung or raised at a pose."""
+    """A backend that crashed, hung or raised at a pose; `query_index` as in `Case`."""
 
-    backends: Backends
+    backends: NamePair
     backend: str
     pose: str
-    call: int
+    query_index: int
     reason: str
 
 
@@ -56,25 +61,25 @@ class Comparison:
     shared : verdicts that both backends agree on and that the judge contradicts; `wrong` names both
     failures : poses at which a backend crashed, hung or raised
     unsupported : which pairs could not be compared, and why
-    flights : what came of bodies that both flew, each by its own hits
+    flights : pairs of free runs, each by the hits of its own backend
     """
 
     tallies: list[Tally] = field(default_factory=list)
     approximations: list[Approximation] = field(default_factory=list)
-    checked: list[Checked] = field(default_factory=list)
-    gaps: list[GapAxis] = field(default_factory=list)
+    checked: list[CheckedAgreement] = field(default_factory=list)
+    gaps: list[GapHistogram] = field(default_factory=list)
     cases: list[Case] = field(default_factory=list)
     shared: list[Case] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
     unsupported: list[str] = field(default_factory=list)
-    flights: list[SideBySide] = field(default_factory=list)
+    flights: list[FreeRunPair] = field(default_factory=list)
 
     def add(self, other: Comparison) -> None:
         """Take in another one; verdicts of the same backends on the same shape are counted together."""
-        together(self.tallies, other.tallies)
-        together(self.approximations, other.approximations)
-        together(self.checked, other.checked)
-        together(self.gaps, other.gaps)
+        merge(self.tallies, other.tallies)
+        merge(self.approximations, other.approximations)
+        merge(self.checked, other.checked)
+        merge(self.gaps, other.gaps)
         self.cases += other.cases
         self.shared += other.shared
         self.failures += other.failures
@@ -83,5 +88,5 @@ class Comparison:
 
     @property
     def passed(self) -> bool:
-        """Whether nobody was wrong beyond help, and nobody failed."""
+        """Whether there is no disagreement outside the tolerance, no error that both share, and no failure."""
         return not self.cases and not self.shared and not self.failures

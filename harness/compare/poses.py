@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from harness.arrays import Floats
-from harness.motion.kinematics import Flight
+from harness.motion.kinematics import Trajectory
 from harness.scene.scene import Scene
 
 
@@ -28,7 +28,7 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class PoseSet:
-    """A scene and the poses at which it is looked at.
+    """A scene and the poses at which backends are asked about it.
 
     Parameters
     ----------
@@ -46,13 +46,13 @@ class PoseSet:
 def flown(scene: Scene, frames: int, dt: float) -> PoseSet:
     """Bodies that fly through each other, from the start to frame `frames`, `dt` (s) apart.
 
-    With a response no body would ever be seen to overlap another.
+    With a response no two bodies would ever overlap at a frame.
     """
     return PoseSet(scene, lambda held: tuple(_frames(held, frames, dt)))
 
 
 def _frames(scene: Scene, frames: int, dt: float) -> Iterator[Pose]:
-    flight = Flight(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
+    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
     for frame in range(frames + 1):
-        flight.move_to(frame * dt)
-        yield Pose(f"frame {frame}", flight.positions.copy(), flight.quaternions.copy())
+        trajectory.move_to(frame * dt)
+        yield Pose(f"frame {frame}", trajectory.positions.copy(), trajectory.quaternions.copy())

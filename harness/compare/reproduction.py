@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 from harness.compare.outcome import Case
+from harness.vocabulary import MethodName
 
 
 def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
@@ -41,7 +42,8 @@ def text_of(case: Case, mesh: str | None) -> str:
     mesh : name of a mesh file that will lie beside the experiment
     """
     scene, (i, j) = case.scene, case.bodies
-    algorithms = ["brute-force" if name == "fcl" else "native" for name in case.backends]
+    methods = [MethodName.read(name, scene.shape) for name in case.backends]
+    leaves = {leaf: [getattr(method, leaf) for method in methods] for leaf in ("backend", "algorithm")}
     rows = zip(
         scene.bodies.positions.tolist(), scene.bodies.quaternions.tolist(), scene.bodies.sizes.tolist(), strict=True
     )
@@ -49,14 +51,14 @@ def text_of(case: Case, mesh: str | None) -> str:
     declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": bodies}
     if mesh is not None and scene.shape != "sphere":
         declared["mesh"] = mesh
-    verb = "are" if " and " in case.wrong else "is"
+    verb = "are" if case.both_wrong else "is"
     state = "overlap" if case.judgement.touching else "do not touch"
     lines = {
         "title": f"{case.wrong} {verb} wrong about bodies {i} and {j}",
         "question": f"Do they touch? Exactly, they {state}; their gap is {case.judgement.gap:.6g} m.",
         "scene": declared,
         "motion": {"duration": 0, "response": "none"},
-        "zip": [{"backend": list(case.backends), "algorithm": algorithms}],
+        "zip": [leaves],
         "measure": {"repeats": 1},
     }
     head = "# `harness compare` on this file finds it again; `harness view` shows it.\n"

@@ -41,7 +41,8 @@ def judge_surfaces(
     one = turned(first.vertices, quaternion)
     other = turned(second.vertices, other_quaternion) + (other_position - position)
     slack = _ROUNDING * max(float(np.abs(one).max()), float(np.abs(other).max()), float(np.abs(position).max()))
-    nearest_vertices = float(cKDTree(one).query(other)[0].min())
+    distances, _ = cKDTree(one).query(other)
+    nearest_vertices = float(distances.min())
     triangles, other_triangles = one[first.faces], other[second.faces]
     pairs = _close_boxes(triangles, other_triangles, nearest_vertices + slack)
     bounds = np.concatenate(

@@ -1,4 +1,4 @@
-"""What came of the verdicts of two backends on one shape, counted."""
+"""Counts of the verdicts of two backends on one shape."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from typing import TypeVar
 
 from harness.vocabulary import Shape
 
-Backends = tuple[str, str]
+NamePair = tuple[str, str]
+"""Of what is compared. A name is opaque everywhere but where it is turned into what is asked."""
 
 LARGEST_DECADE = 16
-"""Of the bins of `GapAxis`: gaps of a tenth of the size and more."""
+"""Of the bins of `GapHistogram`: gaps of a tenth of the size and more."""
 
 
 @dataclass
 class Counts:
     """Counts of one pair of backends on one shape."""
 
-    backends: Backends
+    backends: NamePair
     shape: Shape
 
     def add(self, other: Counts) -> None:
@@ -53,8 +54,8 @@ class Approximation(Counts):
     ----------
     backend : the one that replaces it
     verdicts : pairs of bodies asked about
-    touching : pairs that touch: both say so, or where they differ the judge
-    reported : pairs that the backend says touch
+    touching : pairs that touch: as both report, or where they differ as the judge finds
+    reported : pairs that the backend reports
     false_hits : of those reported, pairs that do not touch
     contained : of the false hits, pairs of which one surface lies inside the other
     misses : of those that touch, pairs not reported
@@ -80,15 +81,15 @@ class Approximation(Counts):
 
 
 @dataclass
-class Checked(Counts):
-    """Verdicts that both agree on and the judge looked at; `contradicted` of them are wrong beyond help."""
+class CheckedAgreement(Counts):
+    """Verdicts that both agree on and that were judged; `contradicted` of them are wrong outside the tolerance."""
 
     verdicts: int = 0
     contradicted: int = 0
 
 
 @dataclass
-class GapAxis(Counts):
+class GapHistogram(Counts):
     """At which gaps they differ.
 
     Parameters
@@ -107,7 +108,7 @@ class GapAxis(Counts):
 
     def add(self, other: Counts) -> None:
         """Take in the counts of another scene."""
-        assert isinstance(other, GapAxis), "counts of one sort are added"
+        assert isinstance(other, GapHistogram), "counts of one sort are added"
         for kind, decades in other.counts.items():
             mine = self.counts.setdefault(kind, {})
             for decade, count in decades.items():
@@ -115,7 +116,11 @@ class GapAxis(Counts):
 
 
 def decade_of(gap: float) -> int:
-    """The signed decade of a gap, as `GapAxis` has it."""
+    """The signed decade of a gap (of size), as `GapHistogram` has it.
+
+    >>> [decade_of(gap) for gap in (0.0, 2e-15, -3e-3, 0.5, 7.0)]
+    [0, 2, -14, 16, 16]
+    """
     if abs(gap) < 1e-16:
         return 0
     decade = min(LARGEST_DECADE, math.floor(math.log10(abs(gap)) + 1e-9) + 17)
@@ -125,7 +130,7 @@ def decade_of(gap: float) -> int:
 C = TypeVar("C", bound=Counts)
 
 
-def together(counts: list[C], more: list[C]) -> None:
+def merge(counts: list[C], more: list[C]) -> None:
     """Add counts to those of the same backends and shape, in place."""
     for one in more:
         same = next((c for c in counts if (c.backends, c.shape) == (one.backends, one.shape)), None)

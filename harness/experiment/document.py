@@ -1,4 +1,4 @@
-"""A YAML document as plain values that remember where they stood.
+"""A YAML document as plain values, each with its line and column.
 
 Composed from the parser's events in one loop, so that neither depth nor size of a hostile file costs more than its
 length. Left out of YAML on purpose: tags, merge keys, several documents, keys that are not text.
@@ -89,11 +89,11 @@ def read_document(text: str | bytes, file: str) -> Document:
     Raises
     ------
     InputError
-        If there is no telling what the text holds: not UTF-8, not YAML, too large or too deep, no mapping.
+        If the text cannot be read at all: not UTF-8, not YAML, too large or too deep, no mapping.
     """
     document = _compose(_decode(text, file), file)
     if document is None:
-        raise InputError([Problem("the file is empty; `harness new NAME` writes one to start from", file)])
+        raise InputError([Problem("the file is empty; `harness new NAME` writes one to start from", file, 1, 1)])
     if not isinstance(document.value, dict):
         wrong = document.problem((), f"an experiment must be a mapping of keys to values, not {shown(document.value)}")
         raise InputError([*document.problems, wrong])
@@ -108,17 +108,24 @@ def read_value(text: str) -> Any:
     InputError
         If it is no YAML; without places, for there is no file.
     """
-    document = _compose(_decode(text, ""), "")
+    try:
+        document = _compose(_decode(text, ""), "")
+    except InputError as error:
+        raise _without_places(error.problems) from None
     if document is None:
         return None
     if document.problems:
-        raise InputError([Problem(problem.message) for problem in document.problems])
+        raise _without_places(document.problems)
     return document.value
+
+
+def _without_places(problems: Sequence[Problem]) -> InputError:
+    return InputError([Problem(problem.message) for problem in problems])
 
 
 def _decode(text: str | bytes, file: str) -> str:
     if len(text) > LARGEST_FILE:
-        raise InputError([Problem(f"the file is larger than {LARGEST_FILE // 1_000_000} MB", file)])
+        raise InputError([Problem(f"the file is larger than {LARGEST_FILE // 1_000_000} MB", file, 1, 1)])
     text = (text if isinstance(text, str) else _utf8(text, file)).removeprefix("\ufeff")
     if found := _UNPRINTABLE.search(text):
         message = f"the character U+{ord(found[0]):04X} is not allowed; YAML is printable text"
@@ -161,7 +168,7 @@ class _Open:
     anchor: str | None
     children: dict[str | int, Node] = field(default_factory=dict)
     keys: dict[str, Place] = field(default_factory=dict)
-    key: tuple[str | None, Place] | None = None  # a mapping's key that waits for its value; None: refused
+    key: tuple[str | None, Place] | None = None  # the key whose value comes next; its text is None where refused
     size: int = 1
     height: int = 1
 
@@ -183,7 +190,7 @@ class _Composer:
     def stop(self, message: str, place: Place) -> None:
         raise InputError([*self.problems, Problem(message, self.file, *place)])
 
-    def complain(self, message: str, place: Place) -> None:
+    def add_problem(self, message: str, place: Place) -> None:
         self.problems.append(Problem(message, self.file, *place))
 
     def take(self, event: yaml.Event) -> None:
@@ -213,15 +220,15 @@ class _Composer:
             try:
                 value = resolve(value)
             except ValueError as error:
-                self.complain(printable(str(error)), place)
+                self.add_problem(printable(str(error)), place)
                 value = 1.0
         if isinstance(value, str) and any(unicodedata.category(c) in ("Cc", "Cs") and c not in "\n\t" for c in value):
-            self.complain("this text holds a control character", place)
+            self.add_problem("this text holds a control character", place)
             value = "?"
         if value == "<<" and event.implicit[0] and self._awaits_key():
             self.stop("merge keys (<<) are not supported; write the keys out", place)
         if self._awaits_key() and not isinstance(value, str):
-            self.complain(f'a key must be text; put it in quotes: "{printable(event.value)}"', place)
+            self.add_problem(f'a key must be text; put it in quotes: "{printable(event.value)}"', place)
         self._add(Node(value, place), event.anchor, place)
 
     def _alias(self, anchor: str, place: Place) -> None:
@@ -234,7 +241,7 @@ class _Composer:
 
     def _tag(self, tag: str | None, place: Place) -> None:
         if tag is not None:
-            self.complain(f"tags such as {shown(tag)} are not allowed", place)
+            self.add_problem(f"tags such as {shown(tag)} are not allowed", place)
 
     def _awaits_key(self) -> bool:
         return bool(self.stack) and isinstance(self.stack[-1].value, dict) and self.stack[-1].key is None
@@ -269,9 +276,9 @@ class _Composer:
     def _begin_key(self, parent: _Open, node: Node, place: Place) -> None:
         key: str | None = node.value if isinstance(node.value, str) else None
         if isinstance(node.value, dict | list):
-            self.complain("a key must be text", place)
+            self.add_problem("a key must be text", place)
         if key is not None and key in parent.keys:
-            self.complain(f"duplicate key {shown(key)}; the first is in line {parent.keys[key][0]}", place)
+            self.add_problem(f"duplicate key {shown(key)}; the first is in line {parent.keys[key][0]}", place)
             key = None
         parent.key = (key, place)
 
@@ -280,7 +287,7 @@ def _mark(mark: Any) -> Place:
     return mark.line + 1, mark.column + 1
 
 
-# What people most often do wrong, in their words. (Text that both parsers' problems hold -> what to say.)
+# The most frequent mistakes, in plain words: text that both parsers have in their messages -> the message of ours.
 _HINTS = {
     "mapping values are not allowed": 'a ": " stands where no key can be: mend the indentation, or quote the text',
     "found character '\\t'": "a tab cannot indent; use spaces",

@@ -13,12 +13,12 @@ from itertools import product
 from typing import Any
 
 from harness.experiment.combinations import POINT, Conflict, conflicts
-from harness.experiment.complaints import Complaints, Origin
-from harness.experiment.declaration import Axis, Declaration, ExcludeRow, Given
+from harness.experiment.declaration import Axis, Declaration, ExcludeRow, LeafValue
 from harness.experiment.document import KEY
 from harness.experiment.experiment import Point, Reference
 from harness.experiment.leaves import INSTEAD_OF, LEAVES, SECTIONS, identity
 from harness.experiment.messages import flow, listed
+from harness.experiment.problems import FileProblems, Origin
 from harness.experiment.schema import MeasureSpec, ReferenceSpec
 from harness.vocabulary import Shape
 
@@ -27,9 +27,9 @@ MOST_POINTS = 10**5
 # Combinations times rows of `exclude`: more are not gone through, even if few points would be left.
 MOST_COMPARISONS = 10**7
 
-Resolved = dict[str, Given]
+Resolved = dict[str, LeafValue]
 _EXACT_FIRST: tuple[Shape, ...] = ("mesh", "hull", "sphere")
-DEFAULTS: Resolved = {name: Given(leaf.default, None, identity(leaf.default)) for name, leaf in LEAVES.items()}
+DEFAULTS: Resolved = {name: LeafValue(leaf.default, None, identity(leaf.default)) for name, leaf in LEAVES.items()}
 
 
 @dataclass
@@ -41,10 +41,10 @@ class Expansion:
     origins: dict[tuple[str, str], Origin] = field(default_factory=dict)
 
 
-def expand(declaration: Declaration, measure: MeasureSpec, complaints: Complaints) -> Expansion:
-    """All points of a checked declaration; none if there is anything to complain of.
+def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblems) -> Expansion:
+    """All points of a checked declaration; none if there are problems.
 
-    Too many runs are refused from the lengths of the lists, before anything is unfolded.
+    Too many runs are refused by the lengths of the lists, before any point is made.
     """
     axes = [_without_duplicates(axis) for axis in declaration.axes]
     combinations = math.prod(len(axis.rows) for axis in axes)
@@ -52,34 +52,34 @@ def expand(declaration: Declaration, measure: MeasureSpec, complaints: Complaint
     runs = (combinations * varied + len(declaration.include)) * measure.repeats
     rows = len(declaration.exclude)
     if not rows and (refusal := _too_many(axes, runs, measure)):
-        complaints.add(_varying_key(complaints), refusal)
+        problems.add(_varying_key(problems), refusal)
         return Expansion()
     if combinations * rows > MOST_COMPARISONS:
         message = f"{combinations} combinations are too many to hold against {rows} rows of exclude; vary less"
-        complaints.add(_varying_key(complaints), message)
+        problems.add(_varying_key(problems), message)
         return Expansion()
     base = _over(DEFAULTS, declaration.base)
     most = min(measure.max_runs // measure.repeats, MOST_POINTS)
-    kept = _kept(declaration, axes, base, complaints, most) if varied else []
+    kept = _kept(declaration, axes, base, problems, most) if varied else []
     if len(kept) > most:
         message = f"exclude leaves more than {most} points, with {measure.repeats} repeats more than measure.max_runs"
-        complaints.add(_varying_key(complaints), f"{message}, which is {measure.max_runs}; vary less, or raise it")
+        problems.add(_varying_key(problems), f"{message}, which is {measure.max_runs}; vary less, or raise it")
         return Expansion()
     product_points = [_over(base, combination) for combination in kept]
     included = [_over(base, row) for row in declaration.include]
     resolved = [*product_points, *included]
     if refusal := _too_many(axes, len(resolved) * measure.repeats, measure):
-        complaints.add(_varying_key(complaints), refusal)
+        problems.add(_varying_key(problems), refusal)
         return Expansion()
     if not resolved:
-        complaints.add(("exclude", KEY), "every point is excluded")
+        problems.add(("exclude", KEY), "every point is excluded")
     varying = {leaf for axis in axes if len(axis.rows) > 1 for leaf in axis.leaves}
-    _complain_of_conflicts(product_points, varying, complaints)
+    _add_conflicts(product_points, varying, problems)
     for point in included:
-        _complain_of_conflicts([point], set(), complaints)
+        _add_conflicts([point], set(), problems)
     expansion = Expansion(origins=_origins(resolved))
-    if not complaints.problems:
-        mentioned = [leaf for given in (*(axis.leaves for axis in axes), *declaration.include) for leaf in given]
+    if not problems.found:
+        mentioned = [leaf for leaves in (*(axis.leaves for axis in axes), *declaration.include) for leaf in leaves]
         first: dict[tuple[str | None, ...], Resolved] = {}
         for point in resolved:
             first.setdefault(_key(point), point)
@@ -90,16 +90,16 @@ def expand(declaration: Declaration, measure: MeasureSpec, complaints: Complaint
 
 
 def _without_duplicates(axis: Axis) -> Axis:
-    rows: dict[Any, tuple[Given, ...]] = {}
+    rows: dict[Any, tuple[LeafValue, ...]] = {}
     for place, row in enumerate(axis.rows):
         identities = tuple(given.identity for given in row)
         rows.setdefault(place if None in identities else identities, row)
     return Axis(axis.leaves, list(rows.values()))
 
 
-def _varying_key(complaints: Complaints) -> Origin:
-    """What to mend where too much varies."""
-    file = complaints.document.value
+def _varying_key(problems: FileProblems) -> Origin:
+    """The place to correct where too much varies."""
+    file = problems.document.value
     return (next((key for key in ("sweep", "zip", "include") if file.get(key)), "sweep"), KEY)
 
 
@@ -122,7 +122,7 @@ def _over(under: Resolved, over: Resolved) -> Resolved:
 
 
 def _kept(
-    declaration: Declaration, axes: list[Axis], base: Resolved, complaints: Complaints, most: int
+    declaration: Declaration, axes: list[Axis], base: Resolved, problems: FileProblems, most: int
 ) -> list[Resolved]:
     """The combinations of the axes that no row of `exclude` matches; one more than `most` if there are too many."""
     over = {leaf: given for axis in axes for leaf, given in zip(axis.leaves, axis.rows[0], strict=True)}
@@ -137,12 +137,12 @@ def _kept(
                 return kept
     for matcher in matchers:
         if not matcher.matched and not matcher.uncertain and not declaration.narrowed:
-            complaints.add(matcher.row.path, f"this row excludes nothing{matcher.reason()}")
+            problems.add(matcher.row.path, f"this row excludes nothing{matcher.reason()}")
     return kept
 
 
 class _Matcher:
-    """A row of `exclude`, made ready to be held against places along the axes."""
+    """A row of `exclude`, prepared to be matched against places along the axes."""
 
     def __init__(self, row: ExcludeRow, axes: list[Axis], base: Resolved) -> None:
         self.row = row
@@ -150,9 +150,9 @@ class _Matcher:
         self.possible = True
         self.never: str | None = None  # a leaf that never has any of the row's values
         self.places: list[tuple[int, frozenset[int]]] = []
-        compared = [given for givens in row.values.values() for given in givens]
-        for leaf, givens in row.values.items():
-            wanted = {given.identity for given in givens}
+        compared = [given for leaf_values in row.values.values() for given in leaf_values]
+        for leaf, leaf_values in row.values.items():
+            wanted = {given.identity for given in leaf_values}
             number = next((place for place, axis in enumerate(axes) if leaf in axis.leaves), None)
             if number is None:
                 compared.append(base[leaf])
@@ -167,7 +167,7 @@ class _Matcher:
                 matching = bool(places)
             if not matching:
                 self.never = leaf
-        # A wrong value is complained of where it stands; what it would have matched is not known.
+        # A wrong value is reported at its own place; what it would have matched is not known.
         self.uncertain = not row.values or any(given.identity is None for given in compared)
         self.possible &= not self.uncertain
 
@@ -179,12 +179,16 @@ class _Matcher:
     def reason(self) -> str:
         if self.never is None:
             return ": no point has all of these values"
-        givens = self.row.values[self.never]
-        return f": {self.never} is never {listed([flow(given.value) for given in givens], 'or')}" if givens else ""
+        leaf_values = self.row.values[self.never]
+        return (
+            f": {self.never} is never {listed([flow(given.value) for given in leaf_values], 'or')}"
+            if leaf_values
+            else ""
+        )
 
 
-def _complain_of_conflicts(points: Iterable[Resolved], varying: set[str], complaints: Complaints) -> None:
-    """Complain once of each kind of conflict, with the `exclude` row that would take all of its points out."""
+def _add_conflicts(points: Iterable[Resolved], varying: set[str], problems: FileProblems) -> None:
+    """Report each kind of conflict once, with the `exclude` row that would take all of its points out."""
     kinds: dict[tuple[Any, ...], tuple[Conflict, Resolved, dict[str | None, Any]]] = {}
     for point in points:
         values = {leaf: given.value for leaf, given in point.items() if given.identity is not None}
@@ -198,7 +202,7 @@ def _complain_of_conflicts(points: Iterable[Resolved], varying: set[str], compla
             row = {leaf: point[leaf].value for leaf in conflict.leaves}
             row[conflict.leaves[-1]] = list(last.values()) if len(last) > 1 else row[conflict.leaves[-1]]
             message += f"; leave it out with `exclude: - {flow(row)}`"
-        complaints.add(_origin_of(conflict, point, varying), message)
+        problems.add(_origin_of(conflict, point, varying), message)
 
 
 def _origin_of(conflict: Conflict, point: Resolved, varying: set[str]) -> Origin:

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from harness.errors import Problem
-from harness.experiment.complaints import Origin, problem_at
 from harness.experiment.criterion import Criterion
 from harness.experiment.document import Document
 from harness.experiment.leaves import identity, plain
 from harness.experiment.presentation import Published, ReportSpec
+from harness.experiment.problems import Origin, problem_at
 from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, ReferenceSpec, SceneSpec
 from harness.vocabulary import Shape
 

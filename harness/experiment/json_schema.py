@@ -22,7 +22,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 NUMBER_TEXT = rf"^\s*[-+]?{DECIMAL}([eE][-+]?[0-9]+|\s*/\s*{DECIMAL})?\s*$"
 SWITCH_TEXT = ["on", "off", "On", "Off", "ON", "OFF", "yes", "no", "Yes", "No", "YES", "NO"]
 
-# pydantic's words for bounds that a validator of ours stands before, and JSON Schema's.
+# pydantic's names of bounds, which it leaves as they are behind a validator of ours, and JSON Schema's.
 _BOUNDS = {"ge": "minimum", "gt": "exclusiveMinimum", "le": "maximum", "lt": "exclusiveMaximum"}
 
 Schema = dict[str, Any]
@@ -56,7 +56,7 @@ def json_schema() -> Schema:
             "include": _rows(_each(leaves, dict, "a whole point, over the values of the sections")),
             "measure": _or_nothing(_ref(MeasureSpec)),
             "expect": _rows(_ref(Criterion), "must hold, else the sweep fails"),
-            "claims": _rows(_ref(Criterion), "hypotheses; the report says what became of them"),
+            "claims": _rows(_ref(Criterion), "hypotheses; the report says which of them hold"),
             "published": _or_nothing(_ref(Published)),
             "report": _or_nothing(_ref(ReportSpec)),
         },

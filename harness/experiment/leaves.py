@@ -17,7 +17,7 @@ from harness.experiment.number import wrong
 from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, SceneSpec
 
 SECTIONS: dict[str, type[BaseModel]] = {"scene": SceneSpec, "motion": MotionSpec, "engine": EngineSpec}
-# What follows from a point's leaves and its mesh: usable like a leaf where results are picked, not where runs are made.
+# Parameters derived from a point's leaves and its mesh: they select results as leaves do, and cannot be set.
 DERIVED = ("faces", "hull_vertices", "packing", "box_side")
 # Giving one of these in a sweep or with --set takes the place of the other.
 INSTEAD_OF = {"count": "bodies", "bodies": "count", "box": "box_ratio", "box_ratio": "box"}
@@ -87,7 +87,11 @@ LEAVES: dict[str, Leaf] = {
 
 
 def identity(value: Any) -> str:
-    """The same text for the same value of a leaf."""
+    """The same text for the same value of a leaf.
+
+    >>> identity({"uniform": [0.5, 1.5]}) == identity({"uniform": (0.5, 1.5)})
+    True
+    """
     return json.dumps(plain(value), sort_keys=True)
 
 

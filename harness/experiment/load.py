@@ -13,9 +13,8 @@ from typing import Any, Literal, TypeVar
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from harness.errors import InputError, Problem
-from harness.experiment.complaints import Complaints, Origin, Override
 from harness.experiment.criterion import Criterion
-from harness.experiment.declaration import check, declare, override
+from harness.experiment.declaration import apply_override, check, declare
 from harness.experiment.document import KEY, LARGEST_FILE, read_document, read_value
 from harness.experiment.expand import Expansion, expand
 from harness.experiment.experiment import Experiment
@@ -23,6 +22,7 @@ from harness.experiment.leaves import LEAVES, SECTIONS, unknown_key
 from harness.experiment.mesh_location import locate_mesh
 from harness.experiment.messages import near, shown
 from harness.experiment.presentation import Published, ReportSpec
+from harness.experiment.problems import FileProblems, Origin, Override
 from harness.experiment.schema import MOST_RUNS, MeasureSpec, Text
 
 FOLDER = "experiments"
@@ -31,7 +31,7 @@ KEYS = (
     *("measure", "expect", "claims", "published", "report"),
 )
 # Leaf -> where it was set, and to what.
-Settings = dict[str, tuple[Override, Any]]
+Overrides = dict[str, tuple[Override, Any]]
 _NOTHING: Mapping[str, object] = MappingProxyType({})
 _TEXT: TypeAdapter[str] = TypeAdapter(Text)
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -58,29 +58,31 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
     path = Path(path)
     document = read_document(text, str(path))
     file: dict[str, Any] = document.value
-    complaints = Complaints(document)
+    problems = FileProblems(document)
     for key in file:
         if key not in KEYS:
-            complaints.add((key, KEY), unknown_key(key, KEYS))
-    settings = _settings(set, complaints)
-    declaration = declare(file, complaints)
-    for leaf, (setting, value) in settings.items():
+            problems.add((key, KEY), unknown_key(key, KEYS))
+    overrides = _overrides(set, problems)
+    declaration = declare(file, problems)
+    for leaf, (override, value) in overrides.items():
         if leaf in LEAVES:
-            override(declaration, setting, value, complaints)
-    check(declaration, complaints)
+            apply_override(declaration, override, value, problems)
+    check(declaration, problems)
 
-    title = _text(file, "title", settings, complaints)
+    if not _is_text(name_of(path)):
+        problems.add((), "the name of this file is not UTF-8, and results are kept by name: rename it")
+    title = _text(file, "title", overrides, problems)
     if title is None and file.get("title") is None:
-        complaints.add((), '"title" is missing')
-    question = _text(file, "question", settings, complaints)
-    measure = _measure(file, settings, complaints)
-    expect = _criteria(file, "expect", complaints)
-    claims = _criteria(file, "claims", complaints)
-    published = _section(Published, file, "published", complaints)
-    report = _section(ReportSpec, file, "report", complaints)
-    expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), complaints)
-    meshes = _locate_meshes(expansion, path.parent, complaints)
-    complaints.raise_any()
+        problems.add((), '"title" is missing')
+    question = _text(file, "question", overrides, problems)
+    measure = _measure(file, overrides, problems)
+    expect = _criteria(file, "expect", problems)
+    claims = _criteria(file, "claims", problems)
+    published = _section(Published, file, "published", problems)
+    report = _section(ReportSpec, file, "report", problems)
+    expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), problems)
+    meshes = _locate_meshes(expansion, path.parent, problems)
+    problems.raise_any()
     assert title is not None
     assert measure is not None
     return Experiment(
@@ -109,6 +111,11 @@ def name_of(path: Path) -> str:
     *folders, file = absolute.parts
     below = folders[len(folders) - folders[::-1].index(FOLDER) :] if FOLDER in folders else []
     return "/".join([*below, file.removesuffix(".yaml").removesuffix(".yml")])
+
+
+def _is_text(name: str) -> bool:
+    """Whether it came from bytes that are UTF-8."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
 def find_experiments(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
@@ -173,43 +180,43 @@ def _read(path: Path) -> bytes:
         raise InputError([Problem(f"the file cannot be read: {error.strerror}", file)]) from None
 
 
-def _settings(given: Mapping[str, object], complaints: Complaints) -> Settings:
+def _overrides(given: Mapping[str, object], problems: FileProblems) -> Overrides:
     """The overrides with their values, text read as YAML; title and question are text as they stand."""
-    settings: Settings = {}
+    overrides: Overrides = {}
     settable = ("title", "question", *LEAVES, *MeasureSpec.model_fields)
     for leaf, value in given.items():
-        setting = Override(leaf, value)
+        override = Override(leaf, value)
         if leaf not in settable:
             unknown = f"unknown leaf {shown(leaf)}{near(leaf, settable)}"
-            complaints.add(setting, f"{shown(leaf)} cannot be set; only leaves can" if leaf in KEYS else unknown)
+            problems.add(override, f"{shown(leaf)} cannot be set; only leaves can" if leaf in KEYS else unknown)
         elif leaf in ("title", "question") or not isinstance(value, str):
-            settings[leaf] = (setting, value)
+            overrides[leaf] = (override, value)
         else:
             try:
-                settings[leaf] = (setting, read_value(value))
+                overrides[leaf] = (override, read_value(value))
             except InputError as error:
                 for problem in error.problems:
-                    complaints.add(setting, problem.message)
-    return settings
+                    problems.add(override, problem.message)
+    return overrides
 
 
-def _text(file: Mapping[str, Any], key: str, settings: Settings, complaints: Complaints) -> str | None:
+def _text(file: Mapping[str, Any], key: str, overrides: Overrides, problems: FileProblems) -> str | None:
     origin: Origin
-    origin, value = settings.get(key, ((key,), file.get(key)))
+    origin, value = overrides.get(key, ((key,), file.get(key)))
     if value is None:
         return None
     try:
         return _TEXT.validate_python(value)
     except ValidationError as error:
-        complaints.add_errors(origin, error)
+        problems.add_errors(origin, error)
         return None
 
 
-def _measure(file: Mapping[str, Any], settings: Settings, complaints: Complaints) -> MeasureSpec | None:
+def _measure(file: Mapping[str, Any], overrides: Overrides, problems: FileProblems) -> MeasureSpec | None:
     written = file.get("measure")
     if written is not None and not isinstance(written, dict):
-        return _section(MeasureSpec, file, "measure", complaints)
-    set_here = {name: setting for name, setting in settings.items() if name in MeasureSpec.model_fields}
+        return _section(MeasureSpec, file, "measure", problems)
+    set_here = {name: override for name, override in overrides.items() if name in MeasureSpec.model_fields}
     values = {**(written or {}), **{name: value for name, (_, value) in set_here.items()}}
     try:
         return MeasureSpec.model_validate(values)
@@ -217,37 +224,37 @@ def _measure(file: Mapping[str, Any], settings: Settings, complaints: Complaints
         for found in error.errors(include_url=False):
             name = str(found["loc"][0])
             origin: Origin = set_here[name][0] if name in set_here else ("measure",)
-            complaints.add_error(origin, found, MeasureSpec)
+            problems.add_error(origin, found, MeasureSpec)
         return None
 
 
-def _section(model: type[_Model], file: Mapping[str, Any], key: str, complaints: Complaints) -> _Model | None:
+def _section(model: type[_Model], file: Mapping[str, Any], key: str, problems: FileProblems) -> _Model | None:
     if file.get(key) is None:
         return None
     try:
         return model.model_validate(file[key])
     except ValidationError as error:
-        complaints.add_errors((key,), error, model)
+        problems.add_errors((key,), error, model)
         return None
 
 
-def _criteria(file: Mapping[str, Any], key: str, complaints: Complaints) -> tuple[Criterion, ...]:
+def _criteria(file: Mapping[str, Any], key: str, problems: FileProblems) -> tuple[Criterion, ...]:
     rows = file.get(key)
     if rows is None:
         return ()
     if not isinstance(rows, list):
-        complaints.add((key,), f"must be a list of rows, such as [{{metric: escaped, equals: 0}}], not {shown(rows)}")
+        problems.add((key,), f"must be a list of rows, such as [{{metric: escaped, equals: 0}}], not {shown(rows)}")
         return ()
     found = []
     for place, row in enumerate(rows):
         try:
             found.append(Criterion.model_validate(row))
         except ValidationError as error:
-            complaints.add_errors((key, place), error, Criterion)
+            problems.add_errors((key, place), error, Criterion)
     return tuple(found)
 
 
-def _locate_meshes(expansion: Expansion, folder: Path, complaints: Complaints) -> dict[str, Path]:
+def _locate_meshes(expansion: Expansion, folder: Path, problems: FileProblems) -> dict[str, Path]:
     """The files of all meshes that points refer to."""
     located: dict[str, Path] = {}
     for (leaf, text), origin in expansion.origins.items():
@@ -256,5 +263,5 @@ def _locate_meshes(expansion: Expansion, folder: Path, complaints: Complaints) -
             try:
                 located[reference] = locate_mesh(reference, folder)
             except InputError as error:
-                complaints.add(origin, str(error))
+                problems.add(origin, str(error))
     return located

@@ -1,7 +1,7 @@
 """Where a mesh that an experiment names is found, and where it may not be.
 
-An experiment is a stranger's file: what it names must lie in its own folder, in a folder of meshes, or among the data
-of an installed package, symbolic links followed.
+An experiment may come from anywhere and is not trusted: what it names must lie in its own folder, in a folder of
+meshes, or among the data of an installed package, symbolic links followed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What is said to people: values as they would write them, near misses, and pydantic's errors as plain sentences."""
+"""Messages for people: values as they would write them, near misses, and pydantic's errors as plain sentences."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ _PLAIN = re.compile(r"[A-Za-z_][\w./:+-]*")
 
 
 def shown(value: Any) -> str:
-    """A value in a sentence: text in quotes and never long, collections by their kind."""
+    """A value in a sentence: text in quotes and never long, collections by their kind.
+
+    >>> shown("grid"), shown(2.0), shown(True), shown([1, 2]), shown(None)
+    ('"grid"', '2', 'true', 'a list', 'nothing')
+    """
     if value is None:
         return "nothing"
     if isinstance(value, bool):
@@ -31,13 +35,17 @@ def shown(value: Any) -> str:
 
 
 def printable(text: str) -> str:
-    """Text on one line, cut where it is long, without characters that would do something to a terminal."""
+    """Text on one line, cut where it is long, without characters that a terminal would obey."""
     cut = text[:_LONGEST] + "…" if len(text) > _LONGEST else text
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in cut)
 
 
 def flow(value: Any) -> str:
-    """A JSON-like value as a user would write it in a line of YAML."""
+    """A JSON-like value as a user would write it in a line of YAML.
+
+    >>> flow({"count": [5, 10], "stages": {"crossing": False}})
+    '{count: [5, 10], stages: {crossing: off}}'
+    """
     if isinstance(value, bool):
         return "on" if value else "off"
     if value is None:
@@ -52,13 +60,21 @@ def flow(value: Any) -> str:
 
 
 def listed(words: Iterable[str], last: str = "and") -> str:
-    """a, b and c."""
+    """Words in a row.
+
+    >>> listed(["a", "b", "c"]), listed(["a", "b"], "or"), listed(["a"])
+    ('a, b and c', 'a or b', 'a')
+    """
     *most, final = words
     return f"{', '.join(most)} {last} {final}" if most else final
 
 
 def near(name: str, options: Iterable[str]) -> str:
-    """'; did you mean "…"?' for a near miss, else nothing."""
+    """A hint at the option that a name nearly is, else nothing.
+
+    >>> near("cuont", ["count", "size"]), near("mass", ["count", "size"])
+    ('; did you mean "count"?', '')
+    """
     if len(name) > _LONGEST:
         return ""
     by_folded = {option.casefold(): option for option in options}

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from harness.experiment.messages import shown
 
-# Beyond these, squares and cubes of lengths and speeds leave what floats can tell apart.
+# Beyond these, squares and cubes of lengths and speeds would overflow or underflow.
 SMALLEST, LARGEST = 1e-30, 1e30
 
 _UNITS = {"": 1, "b": 1} | {
@@ -25,12 +25,19 @@ BYTES_PATTERN = r"^[0-9]+(\.[0-9]+)? *([kKmMgGtT]?[iI]?[bB])?$"
 
 
 def wrong(message: str) -> PydanticCustomError:
-    """An error for a validator to raise, said to people word for word."""
+    """An error for a validator to raise, whose message is shown word for word."""
     return PydanticCustomError("said", "{message}", {"message": message})
 
 
 def finite(value: Any) -> float:
-    """A number that is neither infinite nor NaN, in floating point."""
+    """A number that is neither infinite nor NaN, in floating point.
+
+    >>> finite(3)
+    3.0
+    >>> finite("3")
+    Traceback (most recent call last):
+    pydantic_core._pydantic_core.PydanticCustomError: must be a number, not "3"
+    """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise wrong(f"must be a number, not {shown(value)}")
     try:
@@ -69,7 +76,14 @@ def holding(count: int, what: str) -> BeforeValidator:
 
 
 def rising(bounds: tuple[float, float]) -> tuple[float, float]:
-    """The bounds, if the low one is the first."""
+    """The bounds, if the low one is the first.
+
+    >>> rising((0.5, 1.5))
+    (0.5, 1.5)
+    >>> rising((1.5, 0.5))
+    Traceback (most recent call last):
+    pydantic_core._pydantic_core.PydanticCustomError: must rise from low to high, not fall from 1.5 to 0.5
+    """
     if bounds[0] > bounds[1]:
         raise wrong(f"must rise from low to high, not fall from {shown(bounds[0])} to {shown(bounds[1])}")
     return bounds

@@ -41,6 +41,9 @@ WORDS = {spelling: value for word, value in _WORDS.items() for spelling in (word
 def resolve(text: str) -> str | int | float | bool | None:
     """The value of a plain scalar.
 
+    >>> resolve("1/4"), resolve("1e-6"), resolve("1_000"), resolve("off"), resolve("1:30")
+    (0.25, 1e-06, 1000, False, '1:30')
+
     Raises
     ------
     ValueError

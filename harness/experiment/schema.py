@@ -1,4 +1,4 @@
-"""What can be said of the scene, its motion, the engine and the measuring: every key, its unit, range and default."""
+"""The keys of scene, motion, engine and measure: each with its unit, range and default."""
 
 from __future__ import annotations
 
@@ -9,7 +9,14 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from harness.experiment.combinations import ENGINE, MOTION, SCENE, Rule, conflicts
 from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
 from harness.experiment.number import Bytes, Number, Switch, Vector, Whole, holding, wrong
-from harness.vocabulary import Algorithm, Response, Shape
+from harness.vocabulary import (
+    DEFAULT_ALGORITHM,
+    REFERENCE_ALGORITHM,
+    Algorithm,
+    ReferenceAlgorithm,
+    Response,
+    Shape,
+)
 
 Text = Annotated[str, Field(min_length=1)]
 Positive = Annotated[Number, Field(gt=0)]
@@ -22,13 +29,13 @@ MOST_RUNS = 10**9
 
 
 class Declared(BaseModel):
-    """The manner of all models: nothing changes, nothing unknown is passed over."""
+    """The base of all models: they cannot be changed, and an unknown key is an error."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
 
 
 def refuse_conflicts(model: BaseModel, rules: tuple[Rule, ...]) -> None:
-    """Hold a model against the rules of combination; a model made in Python meets them too."""
+    """Check a model by the rules of combination; those made in Python are checked too."""
     values = {name: getattr(model, name) for name in type(model).model_fields}
     for conflict in conflicts(values, rules):
         raise wrong(conflict.message.replace("{}", str(values[conflict.leaves[-1]])))
@@ -54,7 +61,7 @@ class BodySpec(Declared):
 
 
 class SceneSpec(Declared):
-    """What flies, in which box."""
+    """The bodies, and the box around them."""
 
     mesh: Text | None = Field(
         None,
@@ -108,7 +115,9 @@ class EngineSpec(Declared):
     """How hits are found."""
 
     backend: Text = Field("fcl", description="library that answers geometry questions; see `harness list`")
-    algorithm: Algorithm = Field("brute-force", description="which questions are asked, and when; see `harness list`")
+    algorithm: Algorithm = Field(
+        DEFAULT_ALGORITHM, description="which questions are asked, and when; see `harness list`"
+    )
     tolerance: Positive = Field(1e-6, description="of size; nearer surfaces touch (predictive hulls, meshes)")
     stages: dict[str, Switch] = Field({}, description="stages forced on or off, for an ablation; see `harness plan`")
 
@@ -121,7 +130,9 @@ class EngineSpec(Declared):
 class ReferenceSpec(Declared):
     """What errors are measured against."""
 
-    algorithm: Literal["predictive"] = Field("predictive", description="of the reference run; frames would miss hits")
+    algorithm: ReferenceAlgorithm = Field(
+        REFERENCE_ALGORITHM, description="of the reference run; frames would miss hits"
+    )
     tolerance: Positive = Field(1e-10, description="its tolerance, of size")
 
 

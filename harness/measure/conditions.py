@@ -1,4 +1,4 @@
-"""What a run met on its machine: load, time stolen by a hypervisor, clock rate. Read before and after it, never during.
+"""The machine while a run went on: load, time stolen by a hypervisor, clock rate. Read before and after, never during.
 
 A quiet machine repeats times within a per cent; these numbers say how quiet it was.
 """

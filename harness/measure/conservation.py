@@ -1,4 +1,4 @@
-"""What ought to stay constant, and how far it has strayed."""
+"""What ought to stay constant in a motion, and how far it drifts."""
 
 from __future__ import annotations
 
@@ -41,22 +41,23 @@ class Conservation:
     def observe_momentum(self, velocities: Floats, wall_impulses: Floats) -> None:
         """Take note of the momentum at these velocities, (n, 3) m/s, after so much from x-, x+, … (6,), kg m/s."""
         if self.momentum_scale > 0.0:
-            given = wall_impulses[0::2] - wall_impulses[1::2]
-            strayed = float(np.linalg.norm(self._masses @ velocities - self._momentum - given)) / self.momentum_scale
-            if not strayed <= self.momentum_drift:
-                self.momentum_drift = strayed
+            from_walls = wall_impulses[0::2] - wall_impulses[1::2]
+            change = self._masses @ velocities - self._momentum - from_walls
+            drift = float(np.linalg.norm(change)) / self.momentum_scale
+            if not drift <= self.momentum_drift:
+                self.momentum_drift = drift
 
 
 @kernel
 def energy(velocities: Floats, masses: Floats) -> float:
     """Translational energy, J: the sum of m v²/2 over velocities (n, 3) in m/s and masses (n,) in kg."""
     total = 0.0
-    lost = 0.0
+    rounded_off = 0.0
     for i in range(len(masses)):
         x, y, z = velocities[i]
         term = 0.5 * masses[i] * (x * x + y * y + z * z)
         # Neumaier's sum: mass ratios of 1e12 must not round the light bodies away
         after = total + term
-        lost += (total - after) + term if abs(total) >= abs(term) else (term - after) + total
+        rounded_off += (total - after) + term if abs(total) >= abs(term) else (term - after) + total
         total = after
-    return total + lost
+    return total + rounded_off

@@ -92,14 +92,14 @@ def declared(value: float) -> str:
     return f"{value:.0f}" if float(value).is_integer() and abs(value) < 1e15 else f"{value:.6g}"
 
 
-def settings(leaves: Mapping[str, Any]) -> str:
+def leaves_text(leaves: Mapping[str, Any]) -> str:
     """Leaves and their values as a sentence has them: "count=50, algorithm=grid"."""
-    return ", ".join(f"{leaf}={_setting(value)}" for leaf, value in leaves.items())
+    return ", ".join(f"{leaf}={_value_text(value)}" for leaf, value in leaves.items())
 
 
-def _setting(value: Any) -> str:
+def _value_text(value: Any) -> str:
     if isinstance(value, list | tuple):
-        return " or ".join(map(_setting, value))
+        return " or ".join(map(_value_text, value))
     if isinstance(value, Mapping):
         return json.dumps(dict(value))
     if isinstance(value, str) and value.startswith('[{"position"'):  # the bodies of a scene, as a table keeps them

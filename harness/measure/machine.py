@@ -7,14 +7,10 @@ import json
 import os
 import platform
 import subprocess
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
-
-_PACKAGES = (
-    "harness", "numpy", "scipy", "numba", "python-fcl", "pybullet", "trimesh", "pandas", "matplotlib", "pydantic",
-    "coal", "mujoco",
-)  # fmt: skip
 
 
 def machine_facts() -> dict[str, Any]:
@@ -34,10 +30,10 @@ def fingerprint(facts: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def package_versions() -> dict[str, str]:
-    """Versions of the packages that a measurement depends on; those not installed are left out."""
+def package_versions(packages: Iterable[str]) -> dict[str, str]:
+    """The versions of packages; those not installed are left out."""
     found = {}
-    for package in _PACKAGES:
+    for package in sorted(packages):
         try:
             found[package] = version(package)
         except PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""The noise floor: how far two equal runs come apart on a machine, below which no two methods are told apart.
+"""The noise floor: how far two equal runs come apart on a machine, below which two methods are not distinguishable.
 
 An interval of five repeats leaves out the true median in one case of sixteen, so that of two equal methods one would
 win that often. A control, the same point run as two arms, shows what such a win is worth: with its floor, an equal
@@ -32,6 +32,6 @@ def noise_floor(first: Sequence[float], second: Sequence[float]) -> float | None
     return float(np.median(pairs.max(axis=1) / pairs.min(axis=1))) - 1.0
 
 
-def told_apart(ratio: Summary, floor: float) -> bool:
+def distinguishable(ratio: Summary, floor: float) -> bool:
     """Whether a ratio is not 1: its whole interval lies beyond the noise floor, on one side."""
     return ratio.low > 1.0 + floor or ratio.high * (1.0 + floor) < 1.0

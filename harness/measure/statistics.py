@@ -61,7 +61,7 @@ class Summary:
         return half / abs(self.median) if self.median else math.inf
 
     @property
-    def stable(self) -> bool | None:
+    def precise(self) -> bool | None:
         """Whether the spread is at most 5 %; None below five values, where it cannot be said."""
         return None if self.coverage is None else self.spread <= NOISY_ABOVE
 

@@ -1,7 +1,7 @@
 """The course of every body in a recorded run: where it was, and how fast, whenever its velocity changed.
 
-Between two changes a body flies straight, so these legs give its place at any time exactly; no frame is sampled. They
-are taken down only where a recording is asked for; the clocks of such a flight are not to be used.
+Between two changes a body flies straight, so that these legs give its place at any time exactly; no frame is sampled.
+They are recorded only for a replay; the clocks of such a run include the recording and are not to be used.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Course:
 
 
 class CourseLog:
-    """Takes down the legs of bodies in flight.
+    """Records the legs of moving bodies.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class CourseLog:
         self._speeds = [velocities.copy()]
 
     def turn(self, time: float, positions: Floats, velocities: Floats) -> None:
-        """Begin a leg for every body whose velocity is another than before.
+        """Begin a leg for every body whose velocity has changed.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class CourseLog:
             self.turn(time, simulation.positions - velocities * (simulation.time - time), velocities)
 
     def course(self) -> Course:
-        """What was taken down; of several legs of a body from the same time on, the last."""
+        """The legs recorded; of several of a body that begin at the same time, the last."""
         times, bodies = np.concatenate(self._times), np.concatenate(self._bodies)
         order = np.lexsort((np.arange(len(times)), bodies, times))
         times, bodies = times[order], bodies[order]

@@ -1,4 +1,4 @@
-"""A number for a whole sequence of hits: two runs of the same number have answered the same hits in the same order."""
+"""A digest of a sequence of hits: two runs with the same digest have answered the same hits in the same order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.arrays import Flags, Ints, Pairs
 
-# A whole number of so many bits is exact in a float.
+# The bits of the digest, so few that a float holds it exactly.
 BITS = 52
 
 

@@ -16,8 +16,8 @@ from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
 
-class Flight:
-    """Bodies in free flight, moved to any time on demand.
+class Trajectory:
+    """The poses of bodies that fly freely between hits, at any time asked for.
 
     Parameters
     ----------
@@ -127,7 +127,11 @@ def _turn_inward(origins: Floats, velocities: Floats, room: Floats, folds: Ints)
 
 @kernel
 def _fold_axis(x: float, v: float, room: float, time: float) -> float:
-    """Triangle wave between -room and room; a body that starts beyond a wall first flies in."""
+    """Triangle wave between -room and room; a body that starts beyond a wall first flies in.
+
+    >>> [_fold_axis(0.0, 1.0, 4.5, time) for time in (4.5, 9.0, 18.0)]
+    [4.5, 0.0, 0.0]
+    """
     y = x + v * time
     if (x > room and y > room and v <= 0.0) or (x < -room and y < -room and v >= 0.0):
         return y

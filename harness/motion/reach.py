@@ -18,12 +18,12 @@ from harness.vocabulary import Response
 SLACK = 1e-9
 
 
-def nobody_meets(scene: Scene, duration: float) -> bool:
-    """Whether it is certain that no two bounding spheres come to touch.
+def no_pair_can_meet(scene: Scene, duration: float) -> bool:
+    """Whether it is certain that no two bounding spheres will touch.
 
     Until two of them do, every speed stays what it is, so that body i stays within |v_i| `duration` of its start. Where
-    the spheres that it can reach are disjoint, nobody meets. They are not looked at where they are so large that they
-    cannot all be disjoint.
+    these reachable spheres are disjoint, no pair can meet. Where their volumes exceed the room, they cannot all be
+    disjoint, and no pairs are searched.
 
     Parameters
     ----------
@@ -44,18 +44,18 @@ def nobody_meets(scene: Scene, duration: float) -> bool:
     return not len(HierarchicalGrid(reach, scene.box).close_pairs(bodies.positions))
 
 
-def walls_are_out_of_reach(scene: Scene, duration: float, response: Response, *, alone: bool) -> bool:
-    """Whether it is certain that no bounding sphere comes to touch a wall.
+def walls_are_out_of_reach(scene: Scene, duration: float, response: Response, *, no_pairs: bool) -> bool:
+    """Whether it is certain that no bounding sphere will touch a wall.
 
     Parameters
     ----------
     scene : Scene
     duration : s
     response : {"reflect", "elastic"}
-    alone : whether no two bodies meet, so that every one flies straight on
+    no_pairs : whether no two bodies meet, so that every one flies straight
     """
     bodies = scene.bodies
-    speeds = np.abs(bodies.velocities) if alone else fastest(scene, response)[:, None]
+    speeds = np.abs(bodies.velocities) if no_pairs else fastest(scene, response)[:, None]
     farthest = np.abs(bodies.positions) + bodies.radii[:, None] + speeds * duration
     return bool((farthest * (1.0 + SLACK) < scene.box.half).all())
 
@@ -70,7 +70,7 @@ def fastest(scene: Scene, response: Response) -> Floats:
     return bound * (1.0 + SLACK)
 
 
-def nobody_moves(scene: Scene) -> bool:
+def all_at_rest(scene: Scene) -> bool:
     """Whether every body rests and keeps its orientation, so that every frame looks the same."""
     bodies = scene.bodies
     return not bodies.velocities.any() and (scene.shape == "sphere" or not bodies.spins.any())

@@ -14,7 +14,7 @@ from harness.arrays import Flags, Floats, Pairs
 from harness.kernel import kernel
 
 
-class Answers:
+class CollisionResponse:
     """Answers the contacts of bodies, and remembers whose velocity changed.
 
     Parameters
@@ -94,7 +94,10 @@ def answer_pairs(
     changed: Flags,
     hits: Flags,
 ) -> None:
-    """The kernel of `Answers.pairs`; `added` (x, y, z and the square of a norm), `changed` and `hits` are written."""
+    """The kernel of `CollisionResponse.pairs`.
+
+    Written are `added` (x, y, z and the square of a norm), `changed` and `hits`.
+    """
     for k in range(len(pairs)):
         i, j = pairs[k]
         gap = positions[j] - positions[i]

@@ -8,17 +8,17 @@ bound holds because hulls are convex: where it is not positive they never touch.
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from harness.kernel import inner, kernel
-from harness.narrowphase.gjk import MARGIN, NO_SEEDS, Seeds, hull_distance, relative_pose
+from harness.narrowphase.free_flight import Motion, orientation, place, turning_speed
+from harness.narrowphase.gjk import COLD_START, MARGIN, WarmStart, hull_distance, relative_pose
 from harness.narrowphase.support import SupportMap, support
-from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, rotation, scaled, turned, turned_back
-
-NEVER, IMPACT, STALLED = 0, 1, 2
+from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, scaled, turned, turned_back
+from harness.narrowphase.verdicts import SearchVerdict
 
 # Steps after which a search is given up where it stands. Ordinary ones take 2 to 50.
 MOST_STEPS = 1000
@@ -26,46 +26,58 @@ MOST_STEPS = 1000
 MOST_TRIALS = 3
 
 
-class Motion(NamedTuple):
-    """A body in free flight: where it is at time 0, and how it moves.
-
-    Attributes
-    ----------
-    position : m
-    velocity : m/s
-    quaternion : w, x, y, z
-    spin : rad/s, in the world
-    size : m, factor on the vertices of the hull
-    reach : m, farthest that any of its points is from its axis of spin through the centre, or more
-    """
-
-    position: Vector
-    velocity: Vector
-    quaternion: tuple[float, float, float, float]
-    spin: Vector
-    size: float
-    reach: float
-
-
 class Impact(NamedTuple):
     """What a search has found.
 
     Attributes
     ----------
-    verdict : IMPACT; NEVER, if nothing touches until the end of the window; STALLED, if it was given up
+    verdict : SearchVerdict of an impact
     time : s, before which nothing touches; of the impact, if there is one, else the end of the window or inf
     gap : m, what was left of the gap at that time
     axis : of the gap, pointing away from the second body or the wall, in the world; a unit vector
-    seeds : for the next search of this pair
+    warm_start : for the next search of this pair
     steps : distances measured
     """
 
-    verdict: int
+    verdict: SearchVerdict
     time: float
     gap: float
     axis: Vector
-    seeds: Seeds
+    warm_start: WarmStart
     steps: int
+
+
+class TurnedHull(NamedTuple):
+    """A hull at an instant.
+
+    Attributes
+    ----------
+    hull : SupportMap
+    body : Motion
+    turn : from the axes of the body to those of the world
+    """
+
+    hull: SupportMap
+    body: Motion
+    turn: Matrix
+
+
+class Gap(NamedTuple):
+    """Between two hulls at an instant.
+
+    Attributes
+    ----------
+    axis : unit vector from b to a
+    room : m, of the gap
+    drift : m/s, at which the centres approach along the axis
+    arm_a, arm_b : m, from either centre to the point that is nearest now
+    """
+
+    axis: Vector
+    room: float
+    drift: float
+    arm_a: Vector
+    arm_b: Vector
 
 
 @kernel
@@ -77,7 +89,7 @@ def time_of_impact(
     begin: float,
     end: float,
     tolerance: float,
-    seeds: Seeds,
+    start: WarmStart,
 ) -> Impact:
     """When two hulls come within a tolerance of each other.
 
@@ -87,7 +99,7 @@ def time_of_impact(
     a, b : Motion
     begin, end : s, the window; the end may be inf
     tolerance : m, the gap at which hulls count as touching
-    seeds : of an earlier search for this pair, or NO_SEEDS
+    start : WarmStart of an earlier search for this pair, or COLD_START
 
     Returns
     -------
@@ -103,69 +115,52 @@ def time_of_impact(
         turn_a, turn_b = orientation(a, time), orientation(b, time)
         offset = minus(place(b, time), place(a, time))
         pose = relative_pose(turn_a, a.size, turn_b, b.size, offset)
-        found = hull_distance(hull_a, hull_b, pose, seeds, scaled(pose.offset, -1.0), margin, np.inf)
-        seeds, gap = found.seeds, found.upper
+        found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf)
+        start, gap = found.warm_start, found.upper
         length = sqrt(dot(found.axis, found.axis))
         if length > 0.0:
             axis = turned(turn_a, scaled(found.axis, 1.0 / length))
         if gap <= near or found.lower <= aim:
-            return Impact(IMPACT, time, gap, axis, seeds, step)
+            return Impact(SearchVerdict.FOUND, time, gap, axis, start, step)
         drift = dot(axis, minus(b.velocity, a.velocity))
-        closing = drift + turning(axis, a) + turning(axis, b)
+        closing = drift + turning_speed(axis, a) + turning_speed(axis, b)
         if closing <= 0.0:
-            return Impact(NEVER, np.inf, gap, axis, seeds, step)
+            return Impact(SearchVerdict.NEVER, np.inf, gap, axis, start, step)
         room = found.lower - aim
         wait = room / closing
         if time + wait <= end:
             arm_a, arm_b = turned(turn_a, found.point_a), minus(turned(turn_a, found.point_b), offset)
-            longer = open_for(hull_a, hull_b, a, b, turn_a, turn_b, axis, room, drift, arm_a, arm_b)
+            one, other = TurnedHull(hull_a, a, turn_a), TurnedHull(hull_b, b, turn_b)
+            longer = open_for(one, other, Gap(axis, room, drift, arm_a, arm_b))
             wait = longer if longer > wait else wait
         time += wait
         if time > end:
-            return Impact(NEVER, end, gap, axis, seeds, step)
-    return Impact(STALLED, time, gap, axis, seeds, MOST_STEPS)
+            return Impact(SearchVerdict.NEVER, end, gap, axis, start, step)
+    return Impact(SearchVerdict.STALLED, time, gap, axis, start, MOST_STEPS)
 
 
 @kernel
-def open_for(
-    hull_a: SupportMap,
-    hull_b: SupportMap,
-    a: Motion,
-    b: Motion,
-    turn_a: Matrix,
-    turn_b: Matrix,
-    axis: Vector,
-    room: float,
-    drift: float,
-    arm_a: Vector,
-    arm_b: Vector,
-) -> float:
+def open_for(one: TurnedHull, other: TurnedHull, gap: Gap) -> float:
     """How long a gap along an axis stays open, s, by what the hulls do at first and what their spins can change of it.
 
     A point at p from its centre moves along the axis n at p.(n x w), which changes by at most |n x w| |w x p| a second.
     So after t no point of a hull is farther along than its support function in the direction n + t (n x w) says, and
     t^2 / 2 times this bound. As a function of t the gap left is concave: open now and later, it is open between.
-
-    Parameters
-    ----------
-    axis : unit vector from b to a
-    room : m, of the gap
-    drift : m/s, at which the centres approach along the axis
-    arm_a, arm_b : m, from either centre to the point that is nearest now
     """
+    a, b, axis, room, drift = one.body, other.body, gap.axis, gap.room, gap.drift
     across_a, across_b = cross(axis, a.spin), cross(axis, b.spin)
     bend = sqrt(dot(across_a, across_a) * dot(a.spin, a.spin)) * a.reach
     bend += sqrt(dot(across_b, across_b) * dot(b.spin, b.spin)) * b.reach
-    rate = dot(across_a, arm_a) - dot(across_b, arm_b) - drift
+    rate = dot(across_a, gap.arm_a) - dot(across_b, gap.arm_b) - drift
     if bend == 0.0:
         return 0.0  # the first bound is as good
     root = sqrt(rate * rate + 2.0 * bend * room)
     time = (rate + root) / bend if rate > 0.0 else 2.0 * room / (root - rate)
-    at_begin = reach_towards(hull_a, hull_b, a, b, turn_a, turn_b, axis, axis)
+    at_begin = reach_towards(one, other, axis, axis)
     safe, left_safe, beyond, left_beyond = 0.0, room, time, 0.0
     for trial in range(MOST_TRIALS):
         forward_a, forward_b = plus(axis, scaled(across_a, time)), plus(axis, scaled(across_b, time))
-        used = reach_towards(hull_a, hull_b, a, b, turn_a, turn_b, forward_a, forward_b) - at_begin
+        used = reach_towards(one, other, forward_a, forward_b) - at_begin
         left = room - used - time * (drift + 0.5 * bend * time)
         if left >= 0.0:
             safe, left_safe = time, left
@@ -179,22 +174,14 @@ def open_for(
 
 
 @inner
-def reach_towards(
-    hull_a: SupportMap,
-    hull_b: SupportMap,
-    a: Motion,
-    b: Motion,
-    turn_a: Matrix,
-    turn_b: Matrix,
-    axis_a: Vector,
-    axis_b: Vector,
-) -> float:
+def reach_towards(one: TurnedHull, other: TurnedHull, axis_a: Vector, axis_b: Vector) -> float:
     """How far hull a reaches against an axis from its centre, and hull b along one, together, m."""
-    back_a, back_b = turned_back(turn_a, axis_a), turned_back(turn_b, axis_b)
+    hull_a, hull_b = one.hull, other.hull
+    back_a, back_b = turned_back(one.turn, axis_a), turned_back(other.turn, axis_b)
     k, m = support(hull_a, -back_a[0], -back_a[1], -back_a[2]), support(hull_b, back_b[0], back_b[1], back_b[2])
     low = hull_a.vertices[k, 0], hull_a.vertices[k, 1], hull_a.vertices[k, 2]
     high = hull_b.vertices[m, 0], hull_b.vertices[m, 1], hull_b.vertices[m, 2]
-    return b.size * dot(back_b, high) - a.size * dot(back_a, low)
+    return other.body.size * dot(back_b, high) - one.body.size * dot(back_a, low)
 
 
 @kernel
@@ -213,7 +200,7 @@ def time_of_wall_impact(
     """
     axis, sign = wall // 2, 2.0 * (wall % 2) - 1.0
     inward = (-sign if axis == 0 else 0.0, -sign if axis == 1 else 0.0, -sign if axis == 2 else 0.0)
-    closing = turning(inward, body) - dot(inward, body.velocity)
+    closing = turning_speed(inward, body) - dot(inward, body.velocity)
     time, gap = begin, 0.0
     for step in range(1, MOST_STEPS + 1):
         m = orientation(body, time)
@@ -222,61 +209,10 @@ def time_of_wall_impact(
         reach = sign * dot(row, (hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]))
         gap = half + dot(inward, place(body, time)) - body.size * reach
         if gap <= max(tolerance, MARGIN * (body.size + half)):
-            return Impact(IMPACT, time, max(0.0, gap), inward, NO_SEEDS, step)
+            return Impact(SearchVerdict.FOUND, time, max(0.0, gap), inward, COLD_START, step)
         if closing <= 0.0:
-            return Impact(NEVER, np.inf, gap, inward, NO_SEEDS, step)
+            return Impact(SearchVerdict.NEVER, np.inf, gap, inward, COLD_START, step)
         time += gap / closing
         if time > end:
-            return Impact(NEVER, end, gap, inward, NO_SEEDS, step)
-    return Impact(STALLED, time, gap, inward, NO_SEEDS, MOST_STEPS)
-
-
-@kernel
-def turning(axis: Vector, body: Motion) -> float:
-    """How fast a point of a spinning body can move along an axis that stands still, m/s, besides its flight.
-
-    (w x p).n = p.(n x w), so that only the spin across the axis counts: a body that spins about it closes no gap.
-    """
-    across = cross(axis, body.spin)
-    return sqrt(dot(across, across)) * body.reach
-
-
-@kernel
-def seen_at(a: Motion, b: Motion, time: float) -> tuple[Motion, Motion]:
-    """The bodies as seen from the centre of the first, which moves with it, and with this time as 0."""
-    offset, velocity, rest = minus(place(b, time), place(a, time)), minus(b.velocity, a.velocity), (0.0, 0.0, 0.0)
-    return (
-        Motion(rest, rest, attitude(a, time), a.spin, a.size, a.reach),
-        Motion(offset, velocity, attitude(b, time), b.spin, b.size, b.reach),
-    )
-
-
-@kernel
-def place(body: Motion, time: float) -> Vector:
-    """Of the centre, m."""
-    return plus(body.position, scaled(body.velocity, time))
-
-
-@kernel
-def orientation(body: Motion, time: float) -> Matrix:
-    """From the axes of the body to those of the world."""
-    w, x, y, z = attitude(body, time)
-    return rotation(w, x, y, z)
-
-
-@kernel
-def attitude(body: Motion, time: float) -> tuple[float, float, float, float]:
-    """exp(w t) q."""
-    x, y, z = body.spin
-    w0, x0, y0, z0 = body.quaternion
-    rate = sqrt(x * x + y * y + z * z)
-    if rate == 0.0:
-        return w0, x0, y0, z0
-    c, s = cos(0.5 * rate * time), sin(0.5 * rate * time) / rate
-    x, y, z = s * x, s * y, s * z
-    return (
-        c * w0 - x * x0 - y * y0 - z * z0,
-        c * x0 + x * w0 + y * z0 - z * y0,
-        c * y0 - x * z0 + y * w0 + z * x0,
-        c * z0 + x * y0 - y * x0 + z * w0,
-    )
+            return Impact(SearchVerdict.NEVER, end, gap, inward, COLD_START, step)
+    return Impact(SearchVerdict.STALLED, time, gap, inward, COLD_START, MOST_STEPS)

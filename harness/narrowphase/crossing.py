@@ -8,160 +8,84 @@ enough. That they do not touch is proved when every part of one has been seen to
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
 from harness.arrays import Ints
-from harness.kernel import inner, kernel
+from harness.kernel import kernel
 from harness.narrowphase.gjk import Relative
-from harness.narrowphase.triangle_tree import TriangleTree
-from harness.narrowphase.vectors import Vector, cross, dot, minus, plus, scaled, turned
+from harness.narrowphase.placed_parts import push_near_halves, triangle_a, triangle_b
+from harness.narrowphase.tree_pairs import NO_NODES, NodePair, Trees
+from harness.narrowphase.vectors import Triangle, Vector, cross, dot, minus
+from harness.narrowphase.verdicts import PairVerdict
 
-CROSSING, APART, UNSURE = 1, 0, 2
-
-Triangle = tuple[Vector, Vector, Vector]
-Disc = tuple[Vector, float, Vector, float]
-"""Centre, radius, unit normal, half the thickness along it."""
-
-# Pairs of nodes on the way at any time, at most: two a level, and fewer than 64 levels a tree.
-DEPTH = 256
 # What a test of two triangles costs, in tests of two nodes.
 TRIANGLES = 4
 
 
+class Crossing(NamedTuple):
+    """Whether two surfaces touch.
+
+    Attributes
+    ----------
+    verdict : TOUCHING, if an edge of one passes through a triangle of the other; SEPARATE or UNDECIDED
+    leaves : of the two triangles; of no meaning where none are known to cross
+    """
+
+    verdict: PairVerdict
+    leaves: NodePair
+
+
 @kernel
 def find_crossing(
-    tree_a: TriangleTree,
-    tree_b: TriangleTree,
-    pose: Relative,
-    start_a: int,
-    start_b: int,
-    margin: float,
-    most: int,
-    stack: Ints,
-) -> tuple[int, int, int]:
+    trees: Trees, pose: Relative, start: NodePair, margin: float, most_steps: int, stack: Ints
+) -> Crossing:
     """Whether the parts of two surfaces below two nodes touch.
 
     Parameters
     ----------
-    tree_a, tree_b : TriangleTree
+    trees : Trees
     pose : Relative
-    start_a, start_b : the nodes
+    start : the nodes
     margin : how far an edge must reach through a triangle and stay off its border, and how far apart parts must be
-    most : steps after which to give up
+    most_steps : after which to give up
     stack : (DEPTH, 2) int array, written
-
-    Returns
-    -------
-    CROSSING and the leaves of two triangles that do; or APART, or UNSURE, and nothing of meaning.
     """
-    stack[0, 0], stack[0, 1] = start_a, start_b
-    height, steps, verdict = 1, 0, APART
+    stack[0, 0], stack[0, 1] = start
+    height, steps, undecided = 1, 0, False
     while height > 0:
-        if steps >= most:
-            return UNSURE, -1, -1
+        if steps >= most_steps:
+            return Crossing(PairVerdict.UNDECIDED, NO_NODES)
         height -= 1
-        a, b = stack[height, 0], stack[height, 1]
-        right_a, right_b = tree_a.right[a], tree_b.right[b]
+        nodes = NodePair(stack[height, 0], stack[height, 1])
+        right_a, right_b = trees.a.right[nodes.a], trees.b.right[nodes.b]
         if right_a < 0 and right_b < 0:
             steps += TRIANGLES
-            found = meeting(triangle_a(tree_a, pose, -1 - right_a), triangle_b(tree_b, pose, -1 - right_b), margin)
-            if found == CROSSING:
-                return CROSSING, a, b
-            verdict = max(verdict, found)
-            continue
-        steps += 1
-        larger_a = right_a >= 0 and tree_a.discs[a, 3] * pose.size_a >= tree_b.discs[b, 3] * pose.size_b
-        if right_b < 0 or larger_a:
-            a0, b0, a1, b1 = a + 1, b, right_a, b
-            disc_b = placed_b(tree_b, pose, b)
-            near0 = nearness(placed_a(tree_a, pose, a0), disc_b, margin)
-            near1 = nearness(placed_a(tree_a, pose, a1), disc_b, margin)
+            found = meeting(triangle_a(trees.a, pose, -1 - right_a), triangle_b(trees.b, pose, -1 - right_b), margin)
+            if found == PairVerdict.TOUCHING:
+                return Crossing(PairVerdict.TOUCHING, nodes)
+            undecided |= found == PairVerdict.UNDECIDED
         else:
-            a0, b0, a1, b1 = a, b + 1, a, right_b
-            disc_a = placed_a(tree_a, pose, a)
-            near0 = nearness(disc_a, placed_b(tree_b, pose, b0), margin)
-            near1 = nearness(disc_a, placed_b(tree_b, pose, b1), margin)
-        if near0 > near1:  # the deeper one goes on top
-            a0, b0, near0, a1, b1, near1 = a1, b1, near1, a0, b0, near0
-        if near1 < 1.0:
-            stack[height, 0], stack[height, 1] = a1, b1
-            height += 1
-        if near0 < 1.0:
-            stack[height, 0], stack[height, 1] = a0, b0
-            height += 1
-    return verdict, -1, -1
+            steps += 1
+            height = push_near_halves(trees, pose, nodes, margin, stack, height)
+    return Crossing(PairVerdict.UNDECIDED if undecided else PairVerdict.SEPARATE, NO_NODES)
 
 
 @kernel
-def nearness(one: Disc, two: Disc, margin: float) -> float:
-    """How near two discs are, squared: the smaller, the deeper they are in each other. 1 if they are a margin apart."""
-    between = minus(two[0], one[0])
-    squared = dot(between, between)
-    cosine = dot(one[2], two[2])
-    sine = sqrt(max(0.0, 1.0 - cosine * cosine)) + 1e-7  # more than rounding takes from it
-    cosine = abs(cosine)
-    along_one, along_two = dot(one[2], between), dot(two[2], between)
-    reach = one[1] + two[1] + margin
-    reach_one = one[3] + two[3] * cosine + two[1] * sine + margin
-    reach_two = two[3] + one[3] * cosine + one[1] * sine + margin
-    apart = (
-        (squared >= reach * reach)
-        | (along_one * along_one >= reach_one * reach_one)
-        | (along_two * along_two >= reach_two * reach_two)
-    )
-    return 1.0 if apart else squared / (reach * reach)
-
-
-@inner
-def placed_a(tree: TriangleTree, pose: Relative, node: int) -> Disc:
-    d, size = tree.discs, pose.size_a
-    centre, normal = (d[node, 0], d[node, 1], d[node, 2]), (d[node, 4], d[node, 5], d[node, 6])
-    return scaled(centre, size), size * d[node, 3], normal, size * d[node, 7]
-
-
-@inner
-def placed_b(tree: TriangleTree, pose: Relative, node: int) -> Disc:
-    d, size = tree.discs, pose.size_b
-    centre, normal = (d[node, 0], d[node, 1], d[node, 2]), (d[node, 4], d[node, 5], d[node, 6])
-    turned_centre = scaled(turned(pose.rotation, centre), size)
-    return plus(pose.offset, turned_centre), size * d[node, 3], turned(pose.rotation, normal), size * d[node, 7]
-
-
-@inner
-def triangle_a(tree: TriangleTree, pose: Relative, k: int) -> Triangle:
-    c, size = tree.corners, pose.size_a
-    return (
-        scaled((c[k, 0, 0], c[k, 0, 1], c[k, 0, 2]), size),
-        scaled((c[k, 1, 0], c[k, 1, 1], c[k, 1, 2]), size),
-        scaled((c[k, 2, 0], c[k, 2, 1], c[k, 2, 2]), size),
-    )
-
-
-@inner
-def triangle_b(tree: TriangleTree, pose: Relative, k: int) -> Triangle:
-    c, size = tree.corners, pose.size_b
-    return (
-        plus(pose.offset, scaled(turned(pose.rotation, (c[k, 0, 0], c[k, 0, 1], c[k, 0, 2])), size)),
-        plus(pose.offset, scaled(turned(pose.rotation, (c[k, 1, 0], c[k, 1, 1], c[k, 1, 2])), size)),
-        plus(pose.offset, scaled(turned(pose.rotation, (c[k, 2, 0], c[k, 2, 1], c[k, 2, 2])), size)),
-    )
-
-
-@kernel
-def meeting(one: Triangle, other: Triangle, margin: float) -> int:
-    """CROSSING if an edge of either triangle passes through the other by more than a margin on every side, APART if
-    there is a wider gap between them, else UNSURE."""
+def meeting(one: Triangle, other: Triangle, margin: float) -> PairVerdict:
+    """TOUCHING if an edge of either triangle passes through the other by more than a margin on every side, SEPARATE if
+    there is a wider gap between them, else UNDECIDED."""
     first = pierced(one, other, margin)
-    if first != UNSURE:
+    if first != PairVerdict.UNDECIDED:
         return first
     second = pierced(other, one, margin)
-    if second != UNSURE:
+    if second != PairVerdict.UNDECIDED:
         return second
-    return APART if parted(one, other, margin) else UNSURE
+    return PairVerdict.SEPARATE if parted(one, other, margin) else PairVerdict.UNDECIDED
 
 
 @kernel
-def pierced(face: Triangle, edges: Triangle, margin: float) -> int:
-    """CROSSING if an edge of the second triangle passes through the first, APART if its plane parts them."""
+def pierced(face: Triangle, edges: Triangle, margin: float) -> PairVerdict:
+    """TOUCHING if an edge of the second triangle passes through the first, SEPARATE if its plane parts them."""
     a, b, c = face
     left, right = minus(b, a), minus(c, a)
     normal = cross(left, right)
@@ -170,14 +94,14 @@ def pierced(face: Triangle, edges: Triangle, margin: float) -> int:
     p, q, r = edges
     at_p, at_q, at_r = dot(normal, minus(p, a)), dot(normal, minus(q, a)), dot(normal, minus(r, a))
     if min(at_p, at_q, at_r) > needed or max(at_p, at_q, at_r) < -needed:
-        return APART
+        return PairVerdict.SEPARATE
     if (
         passes(p, at_p, q, at_q, needed, face, margin)
         or passes(q, at_q, r, at_r, needed, face, margin)
         or passes(r, at_r, p, at_p, needed, face, margin)
     ):
-        return CROSSING
-    return UNSURE
+        return PairVerdict.TOUCHING
+    return PairVerdict.UNDECIDED
 
 
 @kernel

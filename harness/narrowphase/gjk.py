@@ -14,6 +14,12 @@ import numpy as np
 
 from harness.kernel import inner, kernel
 from harness.narrowphase.simplex import (
+    ALL_CORNERS,
+    Nearest,
+    Simplex,
+    extended,
+    kept,
+    nearest_on,
     nearest_on_segment,
     nearest_on_tetrahedron,
     nearest_on_triangle,
@@ -22,8 +28,7 @@ from harness.narrowphase.simplex import (
 )
 from harness.narrowphase.support import SupportMap, support
 from harness.narrowphase.vectors import Matrix, Vector, dot, minus, plus, scaled, turned, turned_back, turned_by_both
-
-SEPARATE, OVERLAP, UNDECIDED = 0, 1, 2
+from harness.narrowphase.verdicts import PairVerdict
 
 # Of the sum of the sizes: the gap or the overlap that a certificate must show. Turning and placing two vertices of
 # close bodies rounds by less than a tenth of it.
@@ -33,10 +38,10 @@ MARGIN = 1e-13
 PRECISION = 1e-14
 MOST_STEPS = 100
 
-Seeds = tuple[int, int, int, int]
-"""Corners of the last simplex, each vertex a << 32 | vertex b, and -1 where there is none."""
+WarmStart = tuple[int, int, int, int]
+"""The simplex that the last search of a pair ended with: of each corner vertex a << 32 | vertex b, and -1 for none."""
 
-NO_SEEDS: Seeds = (-1, -1, -1, -1)
+COLD_START: WarmStart = (-1, -1, -1, -1)
 
 
 class Relative(NamedTuple):
@@ -60,20 +65,20 @@ class Distance(NamedTuple):
 
     Attributes
     ----------
-    verdict : SEPARATE or OVERLAP if certified, else UNDECIDED: closer to touching than rounding can tell
+    verdict : SEPARATE or TOUCHING if certified, else UNDECIDED: closer to touching than rounding can tell
     lower, upper : bounds on the distance; 0 where they overlap
     axis : along which they are at least `lower` apart, pointing from b to a; of no certain length
     point_a, point_b : points of the hulls that are `upper` apart; of no meaning where they overlap
-    seeds : where to start next time
+    warm_start : for the next search of this pair
     """
 
-    verdict: int
+    verdict: PairVerdict
     lower: float
     upper: float
     axis: Vector
     point_a: Vector
     point_b: Vector
-    seeds: Seeds
+    warm_start: WarmStart
 
 
 @kernel
@@ -84,7 +89,7 @@ def relative_pose(rotation_a: Matrix, size_a: float, rotation_b: Matrix, size_b:
 
 @kernel
 def hull_distance(
-    hull_a: SupportMap, hull_b: SupportMap, pose: Relative, seeds: Seeds, axis: Vector, margin: float, enough: float
+    hull_a: SupportMap, hull_b: SupportMap, pose: Relative, start: WarmStart, axis: Vector, margin: float, enough: float
 ) -> Distance:
     """Distance of two hulls.
 
@@ -92,8 +97,8 @@ def hull_distance(
     ----------
     hull_a, hull_b : SupportMap
     pose : Relative
-    seeds : those of an earlier answer for this pair, or NO_SEEDS. They only save time.
-    axis : without seeds, the first guess at the direction from b to a; not zero unless the centres coincide
+    start : that of an earlier answer for this pair, or COLD_START. It only saves time.
+    axis : for a cold start, the first guess at the direction from b to a; not zero unless the centres coincide
     margin : gap or overlap that a certificate must show, at least MARGIN x (size_a + size_b)
     enough : a gap that need not be known better; `margin` to know only whether they touch
 
@@ -102,80 +107,63 @@ def hull_distance(
     Distance
         With `upper` - `lower` within rounding of 1e-14 of the distance, unless `lower` is above `enough`.
     """
-    p0 = p1 = p2 = p3 = (0.0, 0.0, 0.0)
-    s0, s1, s2, s3 = seeds
-    count = 0
+    s0, s1, s2, s3 = start
     if s0 < 0:
         if not (axis[0] != 0.0 or axis[1] != 0.0 or axis[2] != 0.0):
             axis = (1.0, 0.0, 0.0)
         s0 = farthest(hull_a, hull_b, pose, scaled(axis, -1.0))
     p0 = difference(hull_a, hull_b, pose, s0)
-    nearest, squared, corners = p0, dot(p0, p0), 1
+    p1 = p2 = p3 = p0
+    nearest = Nearest(p0, dot(p0, p0), 1)
     if s1 >= 0:
         p1 = difference(hull_a, hull_b, pose, s1)
-        nearest, squared, corners = nearest_on_segment(p0, p1)
+        nearest = nearest_on_segment(p0, p1)
     if s2 >= 0:
         p2 = difference(hull_a, hull_b, pose, s2)
-        nearest, squared, corners = nearest_on_triangle(p0, p1, p2)
+        nearest = nearest_on_triangle(p0, p1, p2)
+    simplex = Simplex(p0, p1, p2, p3, (s0, s1, s2, s3), 4)
     if s3 >= 0:
         p3 = difference(hull_a, hull_b, pose, s3)
+        simplex = Simplex(p0, p1, p2, p3, (s0, s1, s2, s3), 4)
         if room_around_origin(p0, p1, p2, p3) > margin:
-            return Distance(OVERLAP, 0.0, 0.0, nearest, p0, p0, (s0, s1, s2, s3))
+            return Distance(PairVerdict.TOUCHING, 0.0, 0.0, nearest.point, p0, p0, simplex.vertices)
         other = nearest_on_tetrahedron(p0, p1, p2, p3)
-        if other[2] != 15 and other[1] < squared:
-            nearest, squared, corners = other
+        if other.corners != ALL_CORNERS and other.squared < nearest.squared:
+            nearest = other
 
-    lower, best = 0.0, nearest
+    simplex = kept(simplex, nearest.corners)
+    lower, best = 0.0, nearest.point
     for _ in range(MOST_STEPS):
-        # drop the corners that do not carry the nearest point, from the last on
-        count = 4
-        if not corners & 8:
-            s3, count = -1, 3
-        if not corners & 4:
-            p2, s2, p3, s3 = p3, s3, p3, -1
-            count -= 1
-        if not corners & 2:
-            p1, s1, p2, s2, s3 = p2, s2, p3, s3, -1
-            count -= 1
-        if not corners & 1:
-            p0, s0, p1, s1, p2, s2, s3 = p1, s1, p2, s2, p3, s3, -1
-            count -= 1
+        squared = nearest.squared
         if squared <= margin * margin:
             break
-        vertex = farthest(hull_a, hull_b, pose, scaled(nearest, -1.0))
+        vertex = farthest(hull_a, hull_b, pose, scaled(nearest.point, -1.0))
         point = difference(hull_a, hull_b, pose, vertex)
-        along = dot(nearest, point)
+        along = dot(nearest.point, point)
         if along > 0.0 and along > lower * sqrt(squared):
-            lower, best = along / sqrt(squared), nearest
+            lower, best = along / sqrt(squared), nearest.point
             if lower > enough:
                 break
-        if squared - along <= PRECISION * squared or vertex in (s0, s1, s2):
+        if squared - along <= PRECISION * squared or vertex in simplex.vertices:
             break
-        if count == 1:
-            p1, s1 = point, vertex
-            step = nearest_on_segment(p0, p1)
-        elif count == 2:
-            p2, s2 = point, vertex
-            step = nearest_on_triangle(p0, p1, p2)
-        else:
-            p3, s3 = point, vertex
-            step = nearest_on_tetrahedron(p0, p1, p2, p3)
-            if step[2] == 15:
-                inside = room_around_origin(p0, p1, p2, p3) > margin
-                verdict = OVERLAP if inside else UNDECIDED
-                return Distance(verdict, 0.0, 0.0, nearest, p0, p0, (s0, s1, s2, s3))
-        if not step[1] < squared:  # rounding ends the descent
-            s1, s2, s3 = (-1, s2, s3) if count == 1 else (s1, -1 if count == 2 else s2, -1)
+        larger = extended(simplex, point, vertex)
+        step = nearest_on(larger)
+        if step.corners == ALL_CORNERS:
+            inside = room_around_origin(larger.a, larger.b, larger.c, larger.d) > margin
+            verdict = PairVerdict.TOUCHING if inside else PairVerdict.UNDECIDED
+            return Distance(verdict, 0.0, 0.0, nearest.point, larger.a, larger.a, larger.vertices)
+        if not step.squared < squared:  # rounding ends the descent
             break
-        nearest, squared, corners = step
-    verdict = SEPARATE if lower > margin else UNDECIDED
-    shares = weights(p0, p1, p2, count)
+        simplex, nearest = kept(larger, step.corners), step
+    verdict = PairVerdict.SEPARATE if lower > margin else PairVerdict.UNDECIDED
+    shares = weights(simplex.a, simplex.b, simplex.c, simplex.size)
     point_a = point_b = (0.0, 0.0, 0.0)
-    for corner in range(count):
-        seed, share = (s0, shares[0]) if corner == 0 else ((s1, shares[1]) if corner == 1 else (s2, shares[2]))
-        point_a = plus(point_a, scaled(vertex_a(hull_a, pose, seed >> 32), share))
-        point_b = plus(point_b, scaled(vertex_b(hull_b, pose, seed & 0xFFFFFFFF), share))
-    return Distance(verdict, lower, max(lower, sqrt(squared)), best, point_a, point_b, (s0, s1, s2, s3))
+    for corner in range(simplex.size):
+        vertices, share = simplex.vertices[corner], shares[corner]
+        point_a = plus(point_a, scaled(vertex_a(hull_a, pose, vertices >> 32), share))
+        point_b = plus(point_b, scaled(vertex_b(hull_b, pose, vertices & 0xFFFFFFFF), share))
+    upper = max(lower, sqrt(nearest.squared))
+    return Distance(verdict, lower, upper, best, point_a, point_b, simplex.vertices)
 
 
 @inner
@@ -188,9 +176,9 @@ def farthest(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, along: Vect
 
 
 @inner
-def difference(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, seed: int) -> Vector:
-    """The point a - b of the Minkowski difference."""
-    return minus(vertex_a(hull_a, pose, seed >> 32), vertex_b(hull_b, pose, seed & 0xFFFFFFFF))
+def difference(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, vertices: int) -> Vector:
+    """The point a - b of the Minkowski difference, of vertices a << 32 | b."""
+    return minus(vertex_a(hull_a, pose, vertices >> 32), vertex_b(hull_b, pose, vertices & 0xFFFFFFFF))
 
 
 @inner

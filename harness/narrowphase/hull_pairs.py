@@ -10,18 +10,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints, Pairs
 from harness.kernel import kernel
-from harness.narrowphase.gjk import NO_SEEDS, OVERLAP, SEPARATE, UNDECIDED, hull_distance
+from harness.narrowphase.gjk import COLD_START, hull_distance
 from harness.narrowphase.placement import Placement, offset_of, pose_of, rotation_of
 from harness.narrowphase.separating_axis import gap_along
 from harness.narrowphase.support import SupportMap, support_map
 from harness.narrowphase.vectors import scaled, turned
+from harness.narrowphase.verdicts import PairVerdict, PairVerdicts
 from harness.scene.hull import Hull
-
-Verdicts = NDArray[np.int8]
 
 
 class Memory(NamedTuple):
@@ -31,12 +29,12 @@ class Memory(NamedTuple):
     ----------
     keys : (k,) int array, i << 32 | j, ascending
     axes : (k, 3) float array, in the world, from j to i; of no meaning for overlapping pairs
-    seeds : (k, 4) int array, the simplex of overlapping pairs, else -1
+    warm_starts : (k, 4) int array, the simplex of overlapping pairs, else -1
     """
 
     keys: Ints
     axes: Floats
-    seeds: Ints
+    warm_starts: Ints
 
 
 class HullPairs:
@@ -57,9 +55,9 @@ class HullPairs:
         self._margin = margin
         self._hull = support_map(hull.vertices)
         self._last, self._now, self._remembered = memory(64), memory(64), 0
-        self._verdicts: Verdicts = np.empty(64, np.int8)
+        self._verdicts: PairVerdicts = np.empty(64, np.int8)
 
-    def settle(self, pairs: Pairs, placement: Placement) -> tuple[Verdicts, int, int]:
+    def settle(self, pairs: Pairs, placement: Placement) -> tuple[PairVerdicts, int, int]:
         """Verdicts on the pairs of a frame.
 
         Parameters
@@ -69,7 +67,7 @@ class HullPairs:
 
         Returns
         -------
-        verdicts : (k,) int8 array of SEPARATE, OVERLAP and UNDECIDED, overwritten by the next call
+        verdicts : (k,) int8 array of PairVerdict, overwritten by the next call
         overlapping, undecided : how many pairs are
 
         Raises
@@ -105,7 +103,7 @@ def settle(
     last: Memory,
     remembered: int,
     now: Memory,
-    verdicts: Verdicts,
+    verdicts: PairVerdicts,
 ) -> tuple[int, int, int]:
     """Settle each pair, starting from its memory if it has one, and remember how.
 
@@ -128,25 +126,27 @@ def settle(
         while place < remembered and last.keys[place] < key:
             place += 1
         offset = offset_of(placement, i, j)
-        seeds, axis = NO_SEEDS, scaled(offset, -1.0)
+        start, axis = COLD_START, scaled(offset, -1.0)
         if place < remembered and last.keys[place] == key:
-            seeds = last.seeds[place, 0], last.seeds[place, 1], last.seeds[place, 2], last.seeds[place, 3]
-            if seeds[0] < 0:
+            kept = last.warm_starts
+            start = kept[place, 0], kept[place, 1], kept[place, 2], kept[place, 3]
+            if start[0] < 0:
                 axis = last.axes[place, 0], last.axes[place, 1], last.axes[place, 2]
         rotation_i, rotation_j = rotation_of(placement, i), rotation_of(placement, j)
         size_i, size_j = placement.sizes[i], placement.sizes[j]
         needed = margin * (size_i + size_j)
-        verdict = UNDECIDED
-        if seeds[0] < 0 and gap_along(hull, axis, rotation_i, size_i, rotation_j, size_j, offset) > needed:
-            verdict = SEPARATE
+        verdict = PairVerdict.UNDECIDED
+        if start[0] < 0 and gap_along(hull, axis, rotation_i, size_i, rotation_j, size_j, offset) > needed:
+            verdict = PairVerdict.SEPARATE
         else:
             searches += 1
-            found = hull_distance(hull, hull, pose_of(placement, i, j), seeds, scaled(axis, 1.0), needed, needed)
+            found = hull_distance(hull, hull, pose_of(placement, i, j), start, axis, needed, needed)
             verdict, axis = found.verdict, turned(rotation_i, found.axis)
-            seeds = found.seeds if verdict == OVERLAP else NO_SEEDS
+            start = found.warm_start if verdict == PairVerdict.TOUCHING else COLD_START
         now.keys[k], verdicts[k] = key, verdict
         now.axes[k, 0], now.axes[k, 1], now.axes[k, 2] = axis
-        now.seeds[k, 0], now.seeds[k, 1], now.seeds[k, 2], now.seeds[k, 3] = seeds
-        overlapping += verdict == OVERLAP
-        undecided += verdict == UNDECIDED
+        kept = now.warm_starts
+        kept[k, 0], kept[k, 1], kept[k, 2], kept[k, 3] = start
+        overlapping += verdict == PairVerdict.TOUCHING
+        undecided += verdict == PairVerdict.UNDECIDED
     return overlapping, undecided, searches

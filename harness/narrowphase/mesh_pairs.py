@@ -5,15 +5,18 @@ The search starts around the triangles that crossed in the last frame, and from 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from harness.arrays import Ints, Pairs
 from harness.kernel import kernel
-from harness.narrowphase.crossing import CROSSING, DEPTH, UNSURE, find_crossing
+from harness.narrowphase.crossing import find_crossing
 from harness.narrowphase.gjk import MARGIN
-from harness.narrowphase.hull_pairs import Verdicts
 from harness.narrowphase.placement import Placement, pose_of
-from harness.narrowphase.triangle_tree import TriangleTree, triangle_tree
+from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
+from harness.narrowphase.triangle_tree import triangle_tree
+from harness.narrowphase.verdicts import PairVerdict, PairVerdicts
 from harness.scene.mesh import Mesh
 
 # How many levels above the triangles that crossed the search starts, and for how many steps it looks there and from
@@ -21,6 +24,19 @@ from harness.scene.mesh import Mesh
 LEVELS_UP = 3
 NEARBY_STEPS = 100
 STEPS = 20_000
+
+
+class Crossings(NamedTuple):
+    """Where the surfaces of a frame cross.
+
+    Attributes
+    ----------
+    keys : (room,) int array, i << 32 | j, ascending
+    leaves : (room, 2) int array, of triangles that cross
+    """
+
+    keys: Ints
+    leaves: Ints
 
 
 class MeshPairs:
@@ -32,43 +48,51 @@ class MeshPairs:
     """
 
     def __init__(self, mesh: Mesh) -> None:
-        self._tree = triangle_tree(mesh.vertices, mesh.faces)
+        tree = triangle_tree(mesh.vertices, mesh.faces)
+        self._trees = Trees(tree, tree)
         self._stack = np.empty((DEPTH, 2), np.int64)
-        self._last, self._now = np.empty((0, 3), np.int64), np.empty((0, 3), np.int64)
-        self._remembered = 0
+        self._last, self._now, self._remembered = crossings(0), crossings(0), 0
 
-    def settle(self, pairs: Pairs, placement: Placement) -> Verdicts:
-        """Verdicts on the pairs of a frame.
+    def settle(self, pairs: Pairs, placement: Placement) -> PairVerdicts:
+        """Verdicts on the pairs of a frame: TOUCHING, where the surfaces cross.
 
         Parameters
         ----------
         pairs : (k, 2) int array, sorted
         placement : Placement
-
-        Returns
-        -------
-        (k,) int8 array of SEPARATE, OVERLAP (the surfaces cross) and UNDECIDED
         """
-        if len(pairs) > len(self._now):
-            self._now = np.empty((len(pairs) + len(pairs) // 2, 3), np.int64)
+        if len(pairs) > len(self._now.keys):
+            self._now = crossings(len(pairs) + len(pairs) // 2)
         verdicts = np.empty(len(pairs), np.int8)
-        last = self._last[: self._remembered]
-        self._remembered = settle(pairs, placement, self._tree, self._stack, last, self._now, verdicts)
+        last = Crossings(self._last.keys[: self._remembered], self._last.leaves)
+        self._remembered = settle(pairs, placement, self._trees, self._stack, last, self._now, verdicts)
         self._last, self._now = self._now, self._last
         return verdicts
 
 
+def crossings(room: int) -> Crossings:
+    """Unwritten."""
+    return Crossings(np.empty(room, np.int64), np.empty((room, 2), np.int64))
+
+
 @kernel
 def settle(
-    pairs: Pairs, placement: Placement, tree: TriangleTree, stack: Ints, last: Ints, now: Ints, verdicts: Verdicts
+    pairs: Pairs,
+    placement: Placement,
+    trees: Trees,
+    stack: Ints,
+    last: Crossings,
+    now: Crossings,
+    verdicts: PairVerdicts,
 ) -> int:
     """Settle each pair, and remember where surfaces cross.
 
     Parameters
     ----------
     pairs, placement : as `MeshPairs.settle` has them
+    trees : Trees, twice the same
     stack : (DEPTH, 2) written
-    last : (l, 3) int array, i << 32 | j ascending and the leaves that crossed in the last frame
+    last : Crossings of the last frame
     now : the same of this frame, written
     verdicts : (k,) written
 
@@ -82,21 +106,19 @@ def settle(
         key = i << 32 | j
         pose = pose_of(placement, i, j)
         margin = MARGIN * (pose.size_a + pose.size_b)
-        while place < len(last) and last[place, 0] < key:
+        while place < len(last.keys) and last.keys[place] < key:
             place += 1
-        start_a, start_b, most, again = 0, 0, STEPS, False
-        if place < len(last) and last[place, 0] == key:
-            start_a, start_b, most, again = last[place, 1], last[place, 2], NEARBY_STEPS, True
+        start, most_steps, again = ROOTS, STEPS, False
+        if place < len(last.keys) and last.keys[place] == key:
+            start, most_steps, again = NodePair(last.leaves[place, 0], last.leaves[place, 1]), NEARBY_STEPS, True
             for _ in range(LEVELS_UP):
-                start_a, start_b = tree.parent[start_a], tree.parent[start_b]
-        verdict, a, b = UNSURE, -1, -1
-        while True:
-            verdict, a, b = find_crossing(tree, tree, pose, start_a, start_b, margin, most, stack)
-            if verdict == CROSSING or not again:
-                break
-            start_a, start_b, most, again = 0, 0, STEPS, False
-        verdicts[k] = verdict
-        if verdict == CROSSING:
-            now[count, 0], now[count, 1], now[count, 2] = key, a, b
+                start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
+        found = find_crossing(trees, pose, start, margin, most_steps, stack)
+        if found.verdict != PairVerdict.TOUCHING and again:
+            found = find_crossing(trees, pose, ROOTS, margin, STEPS, stack)
+        verdicts[k] = found.verdict
+        if found.verdict == PairVerdict.TOUCHING:
+            now.keys[count] = key
+            now.leaves[count, 0], now.leaves[count, 1] = found.leaves
             count += 1
     return count

@@ -13,11 +13,47 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import inner, strict_step
-from harness.narrowphase.advancement import Motion
-from harness.narrowphase.triangle_distance import Triangle
+from harness.kernel import inner, kernel, strict_step
+from harness.narrowphase.free_flight import Motion, orientation
+from harness.narrowphase.tree_pairs import Proximity
 from harness.narrowphase.triangle_tree import TriangleTree
-from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, scaled, turned
+from harness.narrowphase.vectors import Matrix, Triangle, Vector, cross, dot, minus, plus, scaled, turned
+
+
+class Flight(NamedTuple):
+    """Two bodies as `seen_at` gives them, and how near each other their parts are looked at.
+
+    Attributes
+    ----------
+    a, b : Motion
+    rate_a, rate_b : rad/s, of their spins
+    aim : m, the gap down to which parts stay apart
+    """
+
+    a: Motion
+    b: Motion
+    rate_a: float
+    rate_b: float
+    aim: float
+
+
+class Instant(NamedTuple):
+    """Where two bodies are at a time, from the centre of a, in the axes of the world.
+
+    Attributes
+    ----------
+    flight : Flight
+    turn_a, turn_b : from the axes of either body to those of the world
+    offset : m, from a's centre to b's
+    size_a, size_b : factors on their vertices
+    """
+
+    flight: Flight
+    turn_a: Matrix
+    turn_b: Matrix
+    offset: Vector
+    size_a: float
+    size_b: float
 
 
 class MovingDisc(NamedTuple):
@@ -39,6 +75,28 @@ class MovingDisc(NamedTuple):
     radius: float
     normal: Vector
     thickness: float
+
+
+@kernel
+def flight_of(a: Motion, b: Motion, aim: float) -> Flight:
+    return Flight(a, b, sqrt(dot(a.spin, a.spin)), sqrt(dot(b.spin, b.spin)), aim)
+
+
+@inner
+def instant_of(flight: Flight, time: float) -> Instant:
+    a, b = flight.a, flight.b
+    offset = plus(b.position, scaled(b.velocity, time))
+    return Instant(flight, orientation(a, time), orientation(b, time), offset, a.size, b.size)
+
+
+@inner
+def moving_disc_a(tree: TriangleTree, at: Instant, node: int) -> MovingDisc:
+    return moving_disc(tree, node, at.turn_a, at.flight.a)
+
+
+@inner
+def moving_disc_b(tree: TriangleTree, at: Instant, node: int) -> MovingDisc:
+    return moving_disc(tree, node, at.turn_b, at.flight.b)
 
 
 @inner
@@ -63,33 +121,10 @@ def triangle_of(tree: TriangleTree, k: int, turn: Matrix, size: float) -> Triang
 
 
 @strict_step
-def until_discs_touch(
-    one: MovingDisc,
-    other: MovingDisc,
-    offset: Vector,
-    a: Motion,
-    b: Motion,
-    rates: tuple[float, float],
-    margin: float,
-    horizon: float,
-) -> tuple[float, float]:
-    """How long two discs stay a margin apart.
-
-    Parameters
-    ----------
-    one, other : MovingDisc of bodies a and b
-    offset : m, from a's centre to b's
-    a, b : Motion
-    rates : rad/s, of their spins
-    margin : m
-    horizon : s, beyond which it does not matter
-
-    Returns
-    -------
-    time : s, for which they do, inf if beyond the horizon
-    depth : if that is 0, how near their centres are, squared: from 0 to 1, where they just touch
-    """
-    between = minus(plus(offset, other.arm), one.arm)
+def until_discs_touch(one: MovingDisc, other: MovingDisc, at: Instant, horizon: float) -> Proximity:
+    """How long two discs, of bodies a and b, stay apart; more than a horizon (s) does not matter."""
+    a, b, rate_a, rate_b, margin = at.flight
+    between = minus(plus(at.offset, other.arm), one.arm)
     squared = dot(between, between)
     reach = one.radius + other.radius + margin
     velocity = minus(plus(minus(b.velocity, a.velocity), other.velocity), one.velocity)
@@ -97,9 +132,9 @@ def until_discs_touch(
     if squared > reach * reach:
         distance = sqrt(squared)
         rate = dot(between, velocity) / distance
-        time = until_closed(distance - reach, rate, rates[0] * one.speed + rates[1] * other.speed, horizon)
+        time = until_closed(distance - reach, rate, rate_a * one.speed + rate_b * other.speed, horizon)
         if time == np.inf:
-            return time, np.inf
+            return Proximity(time, np.inf)
     cosine = dot(one.normal, other.normal)
     sine = sqrt(max(0.0, 1.0 - cosine * cosine)) + 1e-7  # more than rounding takes from it
     cosine = abs(cosine)
@@ -113,35 +148,34 @@ def until_discs_touch(
             rate = (rate if along > 0.0 else -rate) - turning_a * one.radius - turning_b * other.radius
             time = max(time, until_closed(gap, rate, turning_a * one.speed + turning_b * other.speed, horizon))
             if time == np.inf:
-                return time, np.inf
-    return time, squared / (reach * reach)
+                return Proximity(time, np.inf)
+    return Proximity(time, squared / (reach * reach))
 
 
 @strict_step
-def until_triangles_touch(
-    one: Triangle, other: Triangle, axis: Vector, offset: Vector, a: Motion, b: Motion, margin: float, horizon: float
-) -> float:
-    """How long two triangles stay a margin apart along an axis that stands still, s.
+def until_triangles_touch(one: Triangle, other: Triangle, axis: Vector, at: Instant, horizon: float) -> float:
+    """How long two triangles stay apart along an axis that stands still, s.
 
     Parameters
     ----------
     one, other : Triangle of bodies a and b, from the centre of a, m
     axis : unit vector, from b to a
-    offset : m, from a's centre to b's
-    a, b, margin, horizon : as for `until_discs_touch`
+    at : Instant
+    horizon : s, beyond which it does not matter; inf then
     """
+    a, b = at.flight.a, at.flight.b
     across_a, across_b = cross(axis, a.spin), cross(axis, b.spin)
     drift = dot(axis, minus(a.velocity, b.velocity))
     bend = sqrt(dot(across_a, across_a)) * fastest(one, (0.0, 0.0, 0.0), a.spin)
-    bend += sqrt(dot(across_b, across_b)) * fastest(other, offset, b.spin)
+    bend += sqrt(dot(across_b, across_b)) * fastest(other, at.offset, b.spin)
     time = horizon
     for i in range(3):
-        height, rate = dot(axis, one[i]) - margin, drift + dot(across_a, one[i])
+        height, rate = dot(axis, one[i]) - at.flight.aim, drift + dot(across_a, one[i])
         for j in range(3):
             gap = height - dot(axis, other[j])
             if not gap > 0.0:
                 return 0.0
-            speed = rate - dot(across_b, minus(other[j], offset))
+            speed = rate - dot(across_b, minus(other[j], at.offset))
             # what is open at both ends is open between them, as the bound is concave
             if not gap + time * (speed - 0.5 * bend * time) > 0.0:
                 time = min(time, until_closed(gap, speed, bend, np.inf))

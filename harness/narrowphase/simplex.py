@@ -7,17 +7,98 @@ a flat triangle or tetrahedron is replaced by its edges or faces, so that no div
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import kernel
+from harness.kernel import inner, kernel
 from harness.narrowphase.vectors import Vector, cross, dot, minus, plus, scaled
 
 # Of the product of the lengths: the most that rounding changes a triple product, and some more.
 ROUNDING = 2e-15
 
-Nearest = tuple[Vector, float, int]
-"""The nearest point, its squared distance, and a bit for each corner that carries it (the first is 1)."""
+# The corners that carry a point inside of a tetrahedron.
+ALL_CORNERS = 15
+
+
+class Nearest(NamedTuple):
+    """The point of a simplex nearest to the origin.
+
+    Attributes
+    ----------
+    point : it
+    squared : its distance, squared
+    corners : a bit for each corner that carries it; that of the first is 1
+    """
+
+    point: Vector
+    squared: float
+    corners: int
+
+
+class Simplex(NamedTuple):
+    """One to four corners, and which vertices they come from.
+
+    Attributes
+    ----------
+    a, b, c, d : the corners; of no meaning from the size on
+    vertices : a number for each; -1 from the size on
+    size : how many corners there are
+    """
+
+    a: Vector
+    b: Vector
+    c: Vector
+    d: Vector
+    vertices: tuple[int, int, int, int]
+    size: int
+
+
+@inner
+def kept(simplex: Simplex, corners: int) -> Simplex:
+    """The simplex of those corners alone, a bit for each."""
+    a, b, c, d = simplex.a, simplex.b, simplex.c, simplex.d
+    at_a, at_b, at_c, at_d = simplex.vertices
+    size = 4
+    # from the last on
+    if not corners & 8:
+        at_d, size = -1, 3
+    if not corners & 4:
+        c, at_c, at_d = d, at_d, -1
+        size -= 1
+    if not corners & 2:
+        b, at_b, c, at_c, at_d = c, at_c, d, at_d, -1
+        size -= 1
+    if not corners & 1:
+        a, at_a, b, at_b, c, at_c, at_d = b, at_b, c, at_c, d, at_d, -1
+        size -= 1
+    return Simplex(a, b, c, d, (at_a, at_b, at_c, at_d), size)
+
+
+@inner
+def extended(simplex: Simplex, corner: Vector, vertex: int) -> Simplex:
+    """The simplex, of three corners at most, and one more."""
+    a, b, c, d = simplex.a, simplex.b, simplex.c, simplex.d
+    at_a, at_b, at_c, at_d = simplex.vertices
+    if simplex.size == 1:
+        b, at_b = corner, vertex
+    elif simplex.size == 2:
+        c, at_c = corner, vertex
+    else:
+        d, at_d = corner, vertex
+    return Simplex(a, b, c, d, (at_a, at_b, at_c, at_d), simplex.size + 1)
+
+
+@inner
+def nearest_on(simplex: Simplex) -> Nearest:
+    """The point nearest to the origin of a simplex of at least two corners, as `nearest_on_tetrahedron` has it."""
+    if simplex.size == 2:
+        found = nearest_on_segment(simplex.a, simplex.b)
+    elif simplex.size == 3:
+        found = nearest_on_triangle(simplex.a, simplex.b, simplex.c)
+    else:
+        found = nearest_on_tetrahedron(simplex.a, simplex.b, simplex.c, simplex.d)
+    return found
 
 
 @kernel
@@ -26,14 +107,14 @@ def nearest_on_segment(a: Vector, b: Vector) -> Nearest:
     along = minus(b, a)
     part, whole = -dot(along, a), dot(along, along)
     if part <= 0.0:
-        return a, dot(a, a), 1
+        return Nearest(a, dot(a, a), 1)
     if part >= whole:
-        return b, dot(b, b), 2
+        return Nearest(b, dot(b, b), 2)
     point = plus(a, scaled(along, part / whole))
     # Near the origin the point is little more than rounding. Made perpendicular once more, it is still a direction in
     # which the ends are equally far, and so one that can prove hulls 1e-12 apart separate.
     point = minus(point, scaled(along, dot(point, along) / whole))
-    return point, dot(point, point), 3
+    return Nearest(point, dot(point, point), 3)
 
 
 @kernel
@@ -46,44 +127,44 @@ def nearest_on_triangle(a: Vector, b: Vector, c: Vector) -> Nearest:
     if area > 0.0 and at_a > 0.0 and at_b > 0.0 and at_c > 0.0:
         # along the normal itself, whose direction stays sharp however near the triangle is
         point = scaled(normal, dot(normal, a) / area)
-        return point, dot(point, point), 7
+        return Nearest(point, dot(point, point), 7)
     # beyond an edge, the nearest point lies on an edge that the origin is beyond
-    best: Nearest = (a, np.inf, 0)
+    best = Nearest(a, np.inf, 0)
     if at_c <= 0.0 or area <= 0.0:
         best = nearest_on_segment(a, b)
     if at_b <= 0.0 or area <= 0.0:
         point, squared, corners = nearest_on_segment(a, c)
-        if squared < best[1]:
-            best = point, squared, (corners & 1) | (corners & 2) << 1
+        if squared < best.squared:
+            best = Nearest(point, squared, (corners & 1) | (corners & 2) << 1)
     if at_a <= 0.0 or area <= 0.0:
         point, squared, corners = nearest_on_segment(b, c)
-        if squared < best[1]:
-            best = point, squared, corners << 1
+        if squared < best.squared:
+            best = Nearest(point, squared, corners << 1)
     return best
 
 
 @kernel
 def nearest_on_tetrahedron(a: Vector, b: Vector, c: Vector, d: Vector) -> Nearest:
-    """The point nearest to the origin on the three faces at d that the origin is beyond; inside, corners are 15.
+    """The point nearest to the origin on the three faces at d that the origin is beyond; inside, of all corners.
 
     The face a b c is left out: the last step came from it, and went towards the origin's side of it.
     """
-    best: Nearest = ((0.0, 0.0, 0.0), np.inf, 15)
+    best = Nearest((0.0, 0.0, 0.0), np.inf, ALL_CORNERS)
     volume = dot(cross(minus(a, d), minus(b, d)), minus(c, d))
     for face in range(3):
         p, q = (a, b) if face == 0 else ((b, c) if face == 1 else (c, a))
         beyond = dot(cross(minus(p, d), minus(q, d)), d)  # times the volume: whether the origin is on the outer side
         if volume == 0.0 or (beyond >= 0.0) == (volume > 0.0):
             point, squared, corners = nearest_on_triangle(p, q, d)
-            if squared < best[1]:
+            if squared < best.squared:
                 first, second, third = corners & 1, corners >> 1 & 1, corners >> 2
                 if face == 0:
-                    kept = first | second << 1
+                    carrying = first | second << 1
                 elif face == 1:
-                    kept = first << 1 | second << 2
+                    carrying = first << 1 | second << 2
                 else:
-                    kept = first << 2 | second
-                best = point, squared, kept | third << 3
+                    carrying = first << 2 | second
+                best = Nearest(point, squared, carrying | third << 3)
     return best
 
 

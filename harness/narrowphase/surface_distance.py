@@ -2,66 +2,61 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from harness.arrays import Ints
 from harness.kernel import kernel
-from harness.narrowphase.crossing import nearness, placed_a, placed_b, triangle_a, triangle_b
 from harness.narrowphase.gjk import Relative
+from harness.narrowphase.placed_parts import disc_a, disc_b, proximity, push_near_halves, triangle_a, triangle_b
+from harness.narrowphase.tree_pairs import NO_NODES, NodePair, Trees
 from harness.narrowphase.triangle_distance import triangle_distance
-from harness.narrowphase.triangle_tree import TriangleTree
+
+
+class SurfaceDistance(NamedTuple):
+    """How far two surfaces are apart.
+
+    Attributes
+    ----------
+    gap : the distance; inf beyond the limit
+    leaves : of the nearest triangles; -1 beyond the limit
+    """
+
+    gap: float
+    leaves: NodePair
 
 
 @kernel
-def surface_distance(
-    tree_a: TriangleTree, tree_b: TriangleTree, pose: Relative, limit: float, margin: float, stack: Ints
-) -> tuple[float, int, int]:
+def surface_distance(trees: Trees, pose: Relative, limit: float, margin: float, stack: Ints) -> SurfaceDistance:
     """The distance of two surfaces, and between which triangles.
 
     Parameters
     ----------
-    tree_a, tree_b : TriangleTree
+    trees : Trees
     pose : Relative
     limit : beyond which the distance does not matter
     margin : a distance that need not be told from 0
     stack : (DEPTH, 2) int array, written
-
-    Returns
-    -------
-    distance, leaf of tree a, leaf of tree b
-        inf and -1, -1 if the surfaces are farther apart than the limit.
     """
-    best, best_a, best_b = np.inf, -1, -1
+    gap, leaves = np.inf, NO_NODES
     stack[0, 0], stack[0, 1] = 0, 0
     height = 1
     while height > 0:
         height -= 1
-        a, b = stack[height, 0], stack[height, 1]
-        # what was near enough when it was put here may be so no longer
-        if best < np.inf and nearness(placed_a(tree_a, pose, a), placed_b(tree_b, pose, b), limit) == 1.0:
-            continue
-        right_a, right_b = tree_a.right[a], tree_b.right[b]
+        nodes = NodePair(stack[height, 0], stack[height, 1])
+        if gap < np.inf:  # what was near enough when it was put here may be so no longer
+            now = proximity(disc_a(trees.a, pose, nodes.a), disc_b(trees.b, pose, nodes.b), pose, limit)
+            if now.wait > 0.0:
+                continue
+        right_a, right_b = trees.a.right[nodes.a], trees.b.right[nodes.b]
         if right_a < 0 and right_b < 0:
-            one, other = triangle_a(tree_a, pose, -1 - right_a), triangle_b(tree_b, pose, -1 - right_b)
+            one, other = triangle_a(trees.a, pose, -1 - right_a), triangle_b(trees.b, pose, -1 - right_b)
             found = triangle_distance(one, other, margin)
             if found.upper <= limit:
-                best, best_a, best_b, limit = found.upper, a, b, found.upper
-                if best <= margin:
+                gap, leaves, limit = found.upper, nodes, found.upper
+                if gap <= margin:
                     break
-            continue
-        larger_a = right_a >= 0 and tree_a.discs[a, 3] * pose.size_a >= tree_b.discs[b, 3] * pose.size_b
-        if right_b < 0 or larger_a:
-            a0, b0, a1, b1 = a + 1, b, right_a, b
         else:
-            a0, b0, a1, b1 = a, b + 1, a, right_b
-        near0 = nearness(placed_a(tree_a, pose, a0), placed_b(tree_b, pose, b0), limit)
-        near1 = nearness(placed_a(tree_a, pose, a1), placed_b(tree_b, pose, b1), limit)
-        if near0 > near1:  # the nearer one goes on top
-            a0, b0, near0, a1, b1, near1 = a1, b1, near1, a0, b0, near0
-        if near1 < 1.0:
-            stack[height, 0], stack[height, 1] = a1, b1
-            height += 1
-        if near0 < 1.0:
-            stack[height, 0], stack[height, 1] = a0, b0
-            height += 1
-    return best, best_a, best_b
+            height = push_near_halves(trees, pose, nodes, limit, stack, height)
+    return SurfaceDistance(gap, leaves)

@@ -12,15 +12,16 @@ from typing import NamedTuple
 
 from harness.kernel import kernel
 from harness.narrowphase.simplex import (
+    ALL_CORNERS,
     Nearest,
-    nearest_on_segment,
-    nearest_on_tetrahedron,
+    Simplex,
+    extended,
+    kept,
+    nearest_on,
     nearest_on_triangle,
     room_around_origin,
 )
-from harness.narrowphase.vectors import Vector, dot, minus, plus, scaled
-
-Triangle = tuple[Vector, Vector, Vector]
+from harness.narrowphase.vectors import Triangle, Vector, dot, minus, plus, scaled
 
 # Relative distance between the two bounds at which the walk ends; it mostly ends earlier, at corners seen before.
 PRECISION = 1e-14
@@ -56,61 +57,42 @@ def triangle_distance(one: Triangle, other: Triangle, margin: float) -> Triangle
         With `upper` - `lower` within rounding of 1e-14 of the distance, unless the walk ended at the margin.
     """
     middle_one, middle_other = plus(plus(one[0], one[1]), one[2]), plus(plus(other[0], other[1]), other[2])
-    p0, s0, _ = lowest(one, other, minus(middle_one, middle_other))
-    p1, p2, p3, s1, s2, s3 = p0, p0, p0, -1, -1, -1
-    nearest, squared, corners = p0, dot(p0, p0), 1
-    lower, axis = 0.0, nearest
+    point, corner, _ = lowest(one, other, minus(middle_one, middle_other))
+    simplex = Simplex(point, point, point, point, (corner, -1, -1, -1), 1)
+    nearest = Nearest(point, dot(point, point), 1)
+    lower, axis = 0.0, point
     for _ in range(MOST_STEPS):
-        # drop the corners that do not carry the nearest point, from the last on
-        count = 4
-        if not corners & 8:
-            s3, count = -1, 3
-        if not corners & 4:
-            p2, s2, s3 = p3, s3, -1
-            count -= 1
-        if not corners & 2:
-            p1, s1, p2, s2, s3 = p2, s2, p3, s3, -1
-            count -= 1
-        if not corners & 1:
-            p0, s0, p1, s1, p2, s2, s3 = p1, s1, p2, s2, p3, s3, -1
-            count -= 1
+        squared = nearest.squared
         if squared <= margin * margin:
             return TriangleDistance(0.0, sqrt(squared), unit(axis))
-        point, corner, along = lowest(one, other, nearest)
+        point, corner, along = lowest(one, other, nearest.point)
         if along > 0.0 and along > lower * sqrt(squared):
-            lower, axis = along / sqrt(squared), nearest
-        if squared - along <= PRECISION * squared or corner in (s0, s1, s2):
+            lower, axis = along / sqrt(squared), nearest.point
+        if squared - along <= PRECISION * squared or corner in simplex.vertices:
             break
-        if count == 1:
-            p1, s1 = point, corner
-            step = nearest_on_segment(p0, p1)
-        elif count == 2:
-            p2, s2 = point, corner
-            step = nearest_on_triangle(p0, p1, p2)
-        else:
-            p3, s3 = point, corner
-            step = nearest_on_tetrahedron(p0, p1, p2, p3)
-            if step[2] == 15:
-                if room_around_origin(p0, p1, p2, p3) > 0.0:
-                    return TriangleDistance(0.0, 0.0, unit(axis))
-                step = nearest_on_flat(p0, p1, p2, p3)
-        if not step[1] < squared:  # rounding ends the descent
+        larger = extended(simplex, point, corner)
+        step = nearest_on(larger)
+        if step.corners == ALL_CORNERS:
+            if room_around_origin(larger.a, larger.b, larger.c, larger.d) > 0.0:
+                return TriangleDistance(0.0, 0.0, unit(axis))
+            step = nearest_on_flat(larger.a, larger.b, larger.c, larger.d)
+        if not step.squared < squared:  # rounding ends the descent
             break
-        nearest, squared, corners = step
-    return TriangleDistance(lower, max(lower, sqrt(squared)), unit(axis))
+        simplex, nearest = kept(larger, step.corners), step
+    return TriangleDistance(lower, max(lower, sqrt(nearest.squared)), unit(axis))
 
 
 @kernel
 def nearest_on_flat(a: Vector, b: Vector, c: Vector, d: Vector) -> Nearest:
     """The point nearest to the origin on the faces at d of a tetrahedron too flat to tell its sides: parallel edges."""
     point, squared, corners = nearest_on_triangle(a, b, d)
-    best = point, squared, corners & 3 | (corners & 4) << 1
+    best = Nearest(point, squared, corners & 3 | (corners & 4) << 1)
     point, squared, corners = nearest_on_triangle(b, c, d)
-    if squared < best[1]:
-        best = point, squared, corners << 1
+    if squared < best.squared:
+        best = Nearest(point, squared, corners << 1)
     point, squared, corners = nearest_on_triangle(a, c, d)
-    if squared < best[1]:
-        best = point, squared, corners & 1 | (corners & 6) << 1
+    if squared < best.squared:
+        best = Nearest(point, squared, corners & 1 | (corners & 6) << 1)
     return best
 
 

@@ -7,6 +7,8 @@ from harness.kernel import kernel
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 """Rows."""
+Triangle = tuple[Vector, Vector, Vector]
+"""Corners."""
 
 
 @kernel

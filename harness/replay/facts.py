@@ -1,4 +1,4 @@
-"""What stands beside a replay: the settings of its run, and what was counted."""
+"""The facts beside a replay: the leaves of its run, and its counters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from harness.replay.document import Fact
 
-_SETTINGS = (
+_LEAVES = (
     *("backend", "algorithm", "shape", "mesh", "count", "size", "speed", "spin", "packing", "box_ratio", "box"),
     *("response", "restitution", "overlap", "duration", "dt", "seed"),
 )
@@ -16,16 +16,16 @@ _COUNTERS = ("pair_hits", "box_hits", "pair_tests", "narrow_tests", "box_tests",
 _THIN = "\u202f"
 
 
-def facts(parameters: Mapping[str, Any], counters: Mapping[str, float]) -> list[Fact]:
+def facts(parameters: Mapping[str, Any], metrics: Mapping[str, float]) -> list[Fact]:
     """Names and values, for people.
 
     Parameters
     ----------
     parameters : leaves of the point
-    counters : of its run
+    metrics : of its run; its counters are told
     """
-    found = [(name, _said(parameters[name])) for name in _SETTINGS if parameters.get(name) is not None]
-    return found + [(name, f"{counters[name]:,.0f}".replace(",", _THIN)) for name in _COUNTERS if name in counters]
+    found = [(name, _said(parameters[name])) for name in _LEAVES if parameters.get(name) is not None]
+    return found + [(name, f"{metrics[name]:,.0f}".replace(",", _THIN)) for name in _COUNTERS if name in metrics]
 
 
 def _said(value: Any) -> str:

@@ -27,7 +27,7 @@ _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const)\b)", re.MU
 
 
 class Setting(NamedTuple):
-    """One thing that can be changed on a live page: a choice where it has options, else a text."""
+    """One thing that can be changed on a live page: a list to choose from where it has options, else a text."""
 
     name: str
     label: str
@@ -53,7 +53,13 @@ def replay_page(
     text = text.replace("<", "\\u003c")  # so that nothing in it ends the script element
     picture = picture or still_text(recording)
     return _page(
-        title, f"{said(recording)}.", facts, back=back, still=picture, alt=described(recording), recording=Markup(text)
+        title,
+        f"{summary(recording)}.",
+        facts,
+        back=back,
+        still=picture,
+        alt=described(recording),
+        recording=Markup(text),
     )
 
 
@@ -79,8 +85,8 @@ def live_page(title: str, settings: Sequence[Setting], columns: Sequence[str]) -
     )
 
 
-def said(recording: Recording) -> str:
-    """What it shows, in a phrase."""
+def summary(recording: Recording) -> str:
+    """What a recording shows, in a phrase."""
     look = "sphere" if recording.surface is None else recording.surface.name
     bodies = f"{len(recording)} {'body' if len(recording) == 1 else 'bodies'} ({look})"
     pairs = int((recording.hit_walls < 0).sum())
@@ -90,9 +96,9 @@ def said(recording: Recording) -> str:
 
 
 def described(recording: Recording) -> str:
-    """The picture in words, for those who do not see it."""
+    """The picture in words, for screen readers."""
     sides = " × ".join(f"{2 * half:.4g}" for half in recording.half_box)
-    return f"A box of {sides} m with {said(recording)}."
+    return f"A box of {sides} m with {summary(recording)}."
 
 
 def _page(

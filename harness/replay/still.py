@@ -1,6 +1,6 @@
 """A still picture of a recording's first moment, for pages without WebGL or without a script.
 
-Triangles are painted from the farthest to the nearest, lit by one lamp, at twice the size and then made smaller.
+Triangles are painted from the farthest to the nearest, lit by one light, at twice the size and then scaled down.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from harness.replay.document import start_positions
 from harness.store.recording import Recording
 
 WIDTH, HEIGHT = 800, 500
-_FINE = 2  # painted at so many times the size
+_OVERSAMPLING = 2  # painted at so many times the size
 _MOST_TRIANGLES = 24_000
 _TURN, _TILT, _FIELD = 0.62, 0.42, 0.62  # as the viewer's first view, rad
 _BODY, _EDGE = np.array([224.0, 148.0, 26.0]), (141, 147, 161, 255)
@@ -29,7 +29,7 @@ _COLOURS = 96
 
 def still(recording: Recording) -> bytes:
     """A PNG with a transparent background, the same bytes for the same recording."""
-    image = Image.new("RGBA", (WIDTH * _FINE, HEIGHT * _FINE), (0, 0, 0, 0))
+    image = Image.new("RGBA", (WIDTH * _OVERSAMPLING, HEIGHT * _OVERSAMPLING), (0, 0, 0, 0))
     draw = ImageDraw.Draw(image)
     eye, axes = _camera(recording.half_box)
     _draw_box(draw, recording.half_box, eye, axes)
@@ -54,22 +54,22 @@ def _camera(half: Floats) -> tuple[Floats, Floats]:
     return back * distance + middle @ axes[:2], axes
 
 
-def _on_paper(points: Floats, eye: Floats, axes: Floats) -> tuple[Floats, Floats]:
+def _projected(points: Floats, eye: Floats, axes: Floats) -> tuple[Floats, Floats]:
     """(…, 2) px and (…) depths, m, of (…, 3) points, m."""
     seen = (points - eye) @ axes.T
     depth = -seen[..., 2]
-    scale = HEIGHT * _FINE / 2 / np.tan(_FIELD / 2)
+    scale = HEIGHT * _OVERSAMPLING / 2 / np.tan(_FIELD / 2)
     flat = np.stack([seen[..., 0], -seen[..., 1]], axis=-1) / depth[..., None] * scale
-    return flat + np.array([WIDTH, HEIGHT]) * _FINE / 2, depth
+    return flat + np.array([WIDTH, HEIGHT]) * _OVERSAMPLING / 2, depth
 
 
 def _draw_box(draw: ImageDraw.ImageDraw, half: Floats, eye: Floats, axes: Floats) -> None:
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
-    flat, _ = _on_paper(corners, eye, axes)
+    flat, _ = _projected(corners, eye, axes)
     for a in range(8):
         for bit in (1, 2, 4):
             if not a & bit:
-                draw.line([tuple(flat[a]), tuple(flat[a | bit])], fill=_EDGE, width=_FINE)
+                draw.line([tuple(flat[a]), tuple(flat[a | bit])], fill=_EDGE, width=_OVERSAMPLING)
 
 
 def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, axes: Floats) -> None:
@@ -81,9 +81,13 @@ def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, a
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     facing = ((eye - corners[:, 0]) * normals).sum(axis=1) > 0.0
     corners, normals = corners[facing], normals[facing]
-    lamp = np.array([-0.75, 1.0, 0.9]) @ axes
-    light = 0.38 + 0.14 * (normals @ axes[1]) + 0.62 * np.maximum(normals @ (lamp / np.linalg.norm(lamp)), 0.0)
-    flat, depth = _on_paper(corners, eye, axes)
+    light_direction = np.array([-0.75, 1.0, 0.9]) @ axes
+    light = (
+        0.38
+        + 0.14 * (normals @ axes[1])
+        + 0.62 * np.maximum(normals @ (light_direction / np.linalg.norm(light_direction)), 0.0)
+    )
+    flat, depth = _projected(corners, eye, axes)
     order = np.argsort(-depth.mean(axis=1), kind="stable")
     colours = np.clip(_BODY * light[:, None], 0, 255).astype(np.int64) @ [1, 2**8, 2**16] + 255 * 2**24
     for triangle, colour in zip(flat[order].reshape(-1, 6).tolist(), colours[order].tolist(), strict=True):

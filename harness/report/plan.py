@@ -28,11 +28,11 @@ def stages(arrangement: Arrangement) -> list[Stage]:
     Reasons that differ in their numbers only are one way: "all 10 … 780 pairs".
     """
     order: dict[str, dict[tuple[bool, str], list[tuple[str, str]]]] = {}
-    for cell in arrangement.cells:
-        for stage in cell.point.plan.get("stages") or ():
+    for point in arrangement.points:
+        for stage in point.row.plan.get("stages") or ():
             why = str(stage.get("why") or "")
             fate = (bool(stage["kept"]), _NUMBER.sub("#", why))
-            order.setdefault(str(stage["name"]), {}).setdefault(fate, []).append((cell.point.key, why))
+            order.setdefault(str(stage["name"]), {}).setdefault(fate, []).append((point.row.key, why))
     return [
         Stage(name, kept, _merged([why for _, why in told]), _where(arrangement, [key for key, _ in told]))
         for name, fates in order.items()
@@ -51,11 +51,11 @@ def _merged(reasons: Sequence[str]) -> str:
 def _where(arrangement: Arrangement, keys: Sequence[str]) -> str:
     """The points in words: all, whole series by name, or how many."""
     wanted = set(keys)
-    total = len(arrangement.cells)
+    total = len(arrangement.points)
     if len(wanted) == total:
         return "all points"
-    whole = [series for series in arrangement.series if {cell.point.key for cell in series.cells} <= wanted]
-    if sum(len(series.cells) for series in whole) == len(wanted) and len(whole) <= 4:
+    whole = [series for series in arrangement.series if {point.row.key for point in series.points} <= wanted]
+    if sum(len(series.points) for series in whole) == len(wanted) and len(whole) <= 4:
         return "; ".join(_named(series) for series in whole)
     return f"{number(len(wanted))} of {plural(total, 'point')}"
 

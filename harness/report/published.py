@@ -16,8 +16,9 @@ from itertools import combinations
 from typing import Any
 
 from harness.measure.metrics import METRICS
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import leaf_text
-from harness.report.series import Arrangement, Cell
+from harness.report.series import Arrangement
 from harness.report.words import setting
 
 _EXACT = 0.005  # a recovered number of bodies further than this from a whole one is none
@@ -32,7 +33,7 @@ class Row:
     experiment: str
     leaves: Mapping[str, Any]
     numbers: Mapping[str, float]
-    cell: Cell | None
+    point: MeasuredPoint | None
     series: str
     style: int
 
@@ -43,11 +44,11 @@ class Row:
 
     def ours(self, metric: str) -> float:
         """Our median of the metric, nan where there is none."""
-        return self.cell.median(metric) if self.cell else math.nan
+        return self.point.median(metric) if self.point else math.nan
 
     def parameter(self, leaf: str) -> Any:
         """A leaf as it is printed, else as our point has it."""
-        return self.leaves.get(leaf, self.cell.point.parameters.get(leaf) if self.cell else None)
+        return self.leaves.get(leaf, self.point.parameters.get(leaf) if self.point else None)
 
 
 @dataclass(frozen=True)
@@ -93,12 +94,12 @@ def published_rows(name: str, published: Mapping[str, Any], arrangement: Arrange
         numbers = {key: float(value) for key, value in given.items() if key in METRICS and _number(value) is not None}
         leaves = {key: value for key, value in given.items() if key not in METRICS}
         met = [
-            (series, cell)
+            (series, point)
             for series in arrangement.series
-            for cell in series.cells
-            if all(_same(cell.point.parameters.get(leaf), value) for leaf, value in leaves.items())
+            for point in series.points
+            if all(_same(point.parameters.get(leaf), value) for leaf, value in leaves.items())
         ]
-        rows += [Row(name, leaves, numbers, cell, series.label, series.style) for series, cell in met] or [
+        rows += [Row(name, leaves, numbers, point, series.label, series.style) for series, point in met] or [
             Row(name, leaves, numbers, None, "", 0)
         ]
     return rows
@@ -156,10 +157,10 @@ def repetitions(rows: Sequence[Row], elsewhere: Sequence[Row] = ()) -> list[Repe
 
 def _same_scene(first: Row, second: Row) -> bool:
     """Whether both rows are of the same scene, so that equal numbers are as they should be."""
-    if first.cell is None or second.cell is None:
+    if first.point is None or second.point is None:
         return False
     leaves = ("count", "mesh", "shape", "box_ratio", "box", "faces", "size")
-    mine, theirs = first.cell.point.parameters, second.cell.point.parameters
+    mine, theirs = first.point.parameters, second.point.parameters
     return all(_same(mine.get(leaf), theirs.get(leaf)) for leaf in leaves)
 
 

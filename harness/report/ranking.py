@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from harness.measure.noise import told_apart
+from harness.measure.noise import distinguishable
 from harness.measure.statistics import Exponent, Summary, fit_exponent, paired_ratio
-from harness.report.series import Arrangement, Cell, Series
+from harness.report.point import MeasuredPoint
+from harness.report.series import Arrangement, Series
 from harness.report.words import more_is_better
 
 
@@ -17,7 +18,7 @@ class Ranked:
     """One series at one x. `behind` is how many times worse than the best it is, None where nothing can be paired."""
 
     series: Series
-    cell: Cell
+    point: MeasuredPoint
     median: float
     behind: Summary | None
     best: bool
@@ -26,7 +27,7 @@ class Ranked:
     @property
     def level(self) -> bool:
         """Whether it is the best, or not to be told from it: the ratio's interval is not beyond the noise floor."""
-        return self.best or (self.behind is not None and not told_apart(self.behind, self.floor))
+        return self.best or (self.behind is not None and not distinguishable(self.behind, self.floor))
 
 
 @dataclass(frozen=True)
@@ -41,29 +42,29 @@ class Growth:
 def rank(series: Sequence[Series], x: object, metric: str, floor: float) -> list[Ranked]:
     """The series that have the metric at x (None: anywhere), best first; `floor` is the noise floor of the metric.
 
-    Left out: runs that disagree with the reference, because a faster answer that is wrong is not faster.
+    Left out: what is known to be wrong, because a faster answer that is wrong is not faster.
     """
     found = []
     for line in series:
-        cell = line.cells[0] if x is None else line.at(x)
-        if cell is not None and math.isfinite(cell.median(metric)) and not cell.disagrees:
-            found.append((line, cell, cell.median(metric)))
+        point = line.points[0] if x is None else line.at(x)
+        if point is not None and math.isfinite(point.median(metric)) and not point.is_wrong:
+            found.append((line, point, point.median(metric)))
     found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])
     if not found:
         return []
     best = found[0][1]
     return [
-        Ranked(line, cell, median, None if cell is best else times_worse(cell, best, metric), cell is best, floor)
-        for line, cell, median in found
+        Ranked(line, point, median, None if point is best else times_worse(point, best, metric), point is best, floor)
+        for line, point, median in found
     ]
 
 
-def times_worse(cell: Cell, best: Cell, metric: str) -> Summary | None:
-    """How many times the metric of `cell` is worse than that of `best`, over the repeats that both have.
+def times_worse(point: MeasuredPoint, best: MeasuredPoint, metric: str) -> Summary | None:
+    """How many times the metric of `point` is worse than that of `best`, over the repeats that both have.
 
     Repeats are paired that ran on the same machine.
     """
-    mine, theirs = cell.by_place(metric), best.by_place(metric)
+    mine, theirs = point.by_place(metric), best.by_place(metric)
     shared = sorted(mine.keys() & theirs.keys())
     if not shared:
         return None
@@ -80,8 +81,8 @@ def growth(arrangement: Arrangement, metrics: Sequence[str]) -> list[Growth]:
     for metric in metrics:
         for line in arrangement.series:
             samples: dict[float, list[float]] = {}
-            for cell, x in zip(line.cells, line.x, strict=True):
-                samples.setdefault(float(x), []).extend(cell.values(metric))
+            for point, x in zip(line.points, line.x, strict=True):
+                samples.setdefault(float(x), []).extend(point.values(metric))
             exponent = fit_exponent({x: values for x, values in samples.items() if values})
             if exponent.n >= 2:
                 found.append(Growth(line, metric, exponent))

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.measure.metrics import METRICS
 from harness.replay.facts import facts
-from harness.replay.page import described, replay_page, said, still_text
+from harness.replay.page import described, replay_page, still_text, summary
 from harness.replay.still import HEIGHT, WIDTH
 from harness.report.quantity import quantity
 from harness.report.words import setting
@@ -46,10 +45,9 @@ def replay_of(database: str | Path, record: ExperimentRecord) -> Replay | None:
     if found is None:
         return None
     swept = [setting(leaf, found.parameters.get(leaf)) for leaf in record.specification.get("swept") or ()]
-    counters = {name: value for name, value in found.counters.items() if METRICS[name].kind == "counter"}
     still = still_text(found.recording)
     page = replay_page(
-        found.recording, record.title, facts(found.parameters, counters), back="index.html#replay", picture=still
+        found.recording, record.title, facts(found.parameters, found.counters), back="index.html#replay", picture=still
     )
     which = f"{', '.join(swept)}: " if swept else ""
-    return Replay(page, still, described(found.recording), f"{which}{said(found.recording)}.")
+    return Replay(page, still, described(found.recording), f"{which}{summary(found.recording)}.")

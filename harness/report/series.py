@@ -7,103 +7,42 @@ into panels by a leaf of the scene; so they are where methods are compared on se
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
-import numpy as np
-import numpy.typing as npt
-import pandas as pd
-
-from harness.measure.noise import noise_floor
-from harness.measure.statistics import Summary, summary
-from harness.report.words import setting
-from harness.store.records import ControlRecord, ExperimentRecord, PointRow
+from harness.report.point import MeasuredPoint
+from harness.report.words import is_noisy, setting
 from harness.vocabulary import METHOD_LEAVES
 
-MOST_IN_A_PANEL = 6
-DEFAULT_METRICS = ("pair_seconds", "box_seconds")
+Noise = Literal["low noise", "noisy", ""]
 
-
-@dataclass(frozen=True, eq=False)
-class Cell:
-    """One point of an experiment with all its runs, failed ones included; `runs` has a row a run, by repeat."""
-
-    point: PointRow
-    runs: pd.DataFrame
-
-    @cached_property
-    def good(self) -> pd.DataFrame:
-        """The runs that came to their end."""
-        ended: pd.DataFrame = self.runs[self.runs["status"] == "ok"]
-        return ended
-
-    def values(self, metric: str) -> npt.NDArray[np.float64]:
-        """The metric of every good run that reports it, by repeat."""
-        if metric not in self._values:
-            column = self.good[metric] if metric in self.good.columns else ()
-            values = np.asarray(column, dtype=float)
-            self._values[metric] = values[np.isfinite(values)]
-        return self._values[metric]
-
-    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
-        """The metric of every good run that reports it, by repeat and machine.
-
-        To be paired with another point's: times of two machines are not compared.
-        """
-        if metric not in self.good.columns:
-            return {}
-        rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
-        return {(int(repeat), str(machine)): float(value) for repeat, machine, value in rows if math.isfinite(value)}
-
-    def summary(self, metric: str) -> Summary | None:
-        """Median and interval of the metric, None where no good run reports it."""
-        if metric not in self._summaries:
-            values = self.values(metric)
-            self._summaries[metric] = summary(values) if len(values) else None
-        return self._summaries[metric]
-
-    def median(self, metric: str) -> float:
-        """Median of the metric, nan where no good run reports it."""
-        found = self.summary(metric)
-        return found.median if found else math.nan
-
-    @property
-    def disagrees(self) -> bool:
-        """Whether a run's hits differ from the reference's: such a point is shown, and never ranked."""
-        return any(bool((self.values(metric) > 0).any()) for metric in ("missed_hits", "extra_hits"))
-
-    @cached_property
-    def _values(self) -> dict[str, npt.NDArray[np.float64]]:
-        return {}
-
-    @cached_property
-    def _summaries(self) -> dict[str, Summary | None]:
-        return {}
+# Of an experiment's medians, how many must be known to 5 % for its noise to be called low.
+_PRECISE_SHARE = 0.9
 
 
 @dataclass(frozen=True)
 class Series:
-    """Cells that differ in x only. `style` numbers the colour and marker, the same on all of a page."""
+    """Points that differ in x only. `style` numbers the colour and marker, the same on all of a page."""
 
     label: str
     style: int
     panel: str
-    cells: tuple[Cell, ...]
+    points: tuple[MeasuredPoint, ...]
     x: tuple[Any, ...]
 
-    def at(self, x: object) -> Cell | None:
-        """The cell at a value of x."""
-        wanted = _hashable(x)
-        return next((cell for cell, value in zip(self.cells, self.x, strict=True) if _hashable(value) == wanted), None)
+    def at(self, x: object) -> MeasuredPoint | None:
+        """The point at a value of x."""
+        wanted = hashable(x)
+        return next(
+            (point for point, value in zip(self.points, self.x, strict=True) if hashable(value) == wanted), None
+        )
 
     def shares_scenes_with(self, other: Series) -> bool:
         """Whether the two are methods put to the same scenes, wherever they share an x."""
-        theirs = dict(zip(map(_hashable, other.x), other.cells, strict=True))
-        pairs = [(cell, theirs.get(_hashable(x))) for cell, x in zip(self.cells, self.x, strict=True)]
-        return all(_scene(mine.point) == _scene(match.point) for mine, match in pairs if match is not None)
+        theirs = dict(zip(map(hashable, other.x), other.points, strict=True))
+        pairs = [(point, theirs.get(hashable(x))) for point, x in zip(self.points, self.x, strict=True)]
+        return all(mine.scene == match.scene for mine, match in pairs if match is not None)
 
 
 @dataclass(frozen=True)
@@ -123,9 +62,22 @@ class Arrangement:
         return self.floors.get(metric, 0.0)
 
     @property
+    def noise(self) -> Noise:
+        """Whether nine medians in ten are known to 5 %; "" where it cannot be said."""
+        judged = [
+            summary.precise
+            for point in self.points
+            for metric in self.metrics
+            if is_noisy(metric) and (summary := point.summary(metric)) is not None and summary.precise is not None
+        ]
+        if not judged:
+            return ""
+        return "low noise" if sum(judged) >= _PRECISE_SHARE * len(judged) else "noisy"
+
+    @property
     def numeric(self) -> bool:
         """Whether x is a number, so that distances along it mean something."""
-        return all(_is_number(value) for value in self.x_values)
+        return all(is_number(value) for value in self.x_values)
 
     @property
     def panels(self) -> tuple[str, ...]:
@@ -139,123 +91,21 @@ class Arrangement:
             return self.series
         line = self.series[0]
         return tuple(
-            Series(setting(self.x, value), place, line.panel, (cell,), (value,))
-            for place, (cell, value) in enumerate(zip(line.cells, line.x, strict=True))
+            Series(setting(self.x, value), place, line.panel, (point,), (value,))
+            for place, (point, value) in enumerate(zip(line.points, line.x, strict=True))
         )
 
     @property
-    def cells(self) -> list[Cell]:
-        """All cells, series by series."""
-        return [cell for series in self.series for cell in series.cells]
+    def points(self) -> list[MeasuredPoint]:
+        """All points, series by series."""
+        return [point for series in self.series for point in series.points]
 
 
-def arrange(record: ExperimentRecord, runs: pd.DataFrame, controls: Sequence[ControlRecord] = ()) -> Arrangement:
-    """Arrange an experiment's points, its runs (rows of the run table that belong to it), and their controls."""
-    by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
-    nothing = runs.iloc[:0]
-    cells = [Cell(point, by_point.get(point.key, nothing)) for point in record.points]
-    report: Mapping[str, Any] = record.specification.get("report") or {}
-    swept = [leaf for leaf in record.specification.get("swept") or () if _spread(cells, leaf) > 1]
-    x = _x_leaf(cells, swept, report.get("x"))
-    others = [leaf for leaf in swept if leaf != x and not _follows(cells, leaf, x)]
-    panel_leaf = _panel_leaf(cells, others)
-    lines: dict[str, list[Cell]] = {}
-    for cell in cells:
-        lines.setdefault(_key(cell, others), []).append(cell)
-    names = [leaf for leaf in others if leaf != panel_leaf]
-    styles: dict[str, int] = {}
-    series = []
-    for members in lines.values():
-        first = members[0].point.parameters
-        label = _label(first, names)
-        members = sorted(members, key=lambda cell: _order(cell.point.parameters.get(x))) if x else members
-        series.append(
-            Series(
-                label,
-                styles.setdefault(label, len(styles)),
-                setting(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
-                tuple(members),
-                tuple(cell.point.parameters.get(x) for cell in members) if x else tuple(None for _ in members),
-            )
-        )
-    values = {_hashable(cell.point.parameters.get(x)): cell.point.parameters.get(x) for cell in cells} if x else {}
-    y = report.get("y") or DEFAULT_METRICS
-    return Arrangement(
-        x,
-        tuple(sorted(values.values(), key=_order)),
-        tuple(series),
-        panel_leaf,
-        (y,) if isinstance(y, str) else tuple(y),
-        *_floors(cells, controls),
-    )
-
-
-def _floors(cells: Sequence[Cell], controls: Sequence[ControlRecord]) -> tuple[dict[str, float], int]:
-    """The noise floor of every clock that the controls report, and how many pairs there are."""
-    of_point = {cell.point.key: cell for cell in cells}
-    pairs: dict[str, list[tuple[float, float]]] = {}
-    for control in controls:
-        cell = of_point.get(control.point)
-        for metric, value in control.metrics.items() if cell else ():
-            first = cell.by_place(metric).get((control.repeat, control.machine)) if cell else None
-            if first is not None:
-                pairs.setdefault(metric, []).append((first, value))
-    floors = {metric: noise_floor(*zip(*found, strict=True)) for metric, found in pairs.items()}
-    known = {metric: floor for metric, floor in floors.items() if floor is not None}
-    return known, max(map(len, pairs.values()), default=0)
-
-
-def _x_leaf(cells: Sequence[Cell], swept: Sequence[str], wanted: str | None) -> str | None:
-    if wanted and _spread(cells, wanted) > 0:
-        return wanted
-    numeric = [leaf for leaf in swept if all(_is_number(cell.point.parameters.get(leaf)) for cell in cells)]
-    # where no leaf is a number, what the method is tells more as series than along x
-    return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD_LEAVES] or swept), None)
-
-
-def _panel_leaf(cells: Sequence[Cell], others: Sequence[str]) -> str | None:
-    scene = [leaf for leaf in others if leaf not in METHOD_LEAVES]
-    mixed = 0 < len(scene) < len(others)  # methods are compared on the same scene
-    if len(others) < 2 or not (mixed or len({_key(cell, others) for cell in cells}) > MOST_IN_A_PANEL):
-        return None
-    scene = scene or list(others)
-    return min(scene, key=lambda leaf: (_spread(cells, leaf) > 8, -_spread(cells, leaf)))
-
-
-def _scene(point: PointRow) -> dict[str, Any]:
-    return {leaf: value for leaf, value in point.parameters.items() if leaf not in METHOD_LEAVES}
-
-
-def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
-    """The swept leaves' values; where none is left, what the method is."""
-    named = leaves or [leaf for leaf in ("backend", "algorithm") if leaf in parameters]
-    return "\u00a0· ".join(setting(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
-
-
-def _follows(cells: Sequence[Cell], leaf: str, x: str | None) -> bool:
-    """Whether x determines the leaf, as `faces` does the mesh: it is then no series of its own."""
-    if x is None:
-        return False
-    return len({_key(cell, (x, leaf)) for cell in cells}) == _spread(cells, x)
-
-
-def _spread(cells: Sequence[Cell], leaf: str) -> int:
-    """How many values the leaf takes."""
-    return len({_key(cell, (leaf,)) for cell in cells if leaf in cell.point.parameters})
-
-
-def _key(cell: Cell, leaves: Sequence[str]) -> str:
-    return json.dumps([cell.point.parameters.get(leaf) for leaf in leaves], sort_keys=True)
-
-
-def _hashable(value: object) -> object:
+def hashable(value: object) -> object:
+    """A leaf's value as a key."""
     return value if isinstance(value, int | float | str | None) else json.dumps(value, sort_keys=True)
 
 
-def _order(value: object) -> tuple[int, float]:
-    """Numbers by size; anything else keeps the order of the file (sorting is stable)."""
-    return (0, float(value)) if isinstance(value, int | float) and not isinstance(value, bool) else (1, 0.0)
-
-
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> bool:
+    """Whether a leaf's value has a place on an axis."""
     return isinstance(value, int | float) and not isinstance(value, bool)

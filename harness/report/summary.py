@@ -7,16 +7,19 @@ from collections.abc import Sequence
 
 from markupsafe import escape
 
-from harness.report.pages import ExperimentPage, machine_text
-from harness.report.stability import is_case
+from harness.report.experiment import ExperimentPage
+from harness.report.machine import machine_text
+from harness.report.results import Results
+from harness.report.stability.case import is_case
 
 
-def summary(pages: Sequence[ExperimentPage], decisions: Sequence[str], stability: Sequence[str]) -> str:
+def summary(results: Results) -> str:
     """A table with a row an experiment: its title, what was found, and what became of its claims.
 
     Above it stand machine, versions and command of the newest sweep, and what to use at which accuracy; below it how
     far each method survives stiff and extreme scenes, whose experiments have no rows of their own.
     """
+    pages = results.pages
     if not pages:
         return "There are no results yet.\n"
     newest = max((page.record.sweep for page in pages), key=lambda sweep: sweep.id)
@@ -30,6 +33,8 @@ def summary(pages: Sequence[ExperimentPage], decisions: Sequence[str], stability
         if not is_case(page)
     ]
     table = ["", "| experiment | what was found | claims |", "|---|---|---|", *rows] if rows else []
+    decisions = [said for accuracy in results.accuracy for said in accuracy.decisions]
+    stability = results.stability.sentences if results.stability else ()
     lines = [head, *_list("What to use", decisions), *table, *_list("Stiff and extreme scenes", stability)]
     return "\n".join(lines) + "\n"
 

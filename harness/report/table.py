@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import MISSING, Scale, number
-from harness.report.series import Cell
 
 _PLAIN = re.compile(r"−?[\d\u202f]+(\.\d+)?×?")
 
@@ -78,24 +78,24 @@ def words(text: str, style: int | None = None, flag: str = "") -> Entry:
     return Entry(text, style=style, numeric=False, flag=flag)
 
 
-def measured(cell: Cell | None, metric: str, unit: Scale, mark: str = "", flag: str = "") -> Entry:
+def measured(point: MeasuredPoint | None, metric: str, unit: Scale, mark: str = "", flag: str = "") -> Entry:
     """Median and half its interval, ° where a repeat is an outlier; where no run came to its end, why not."""
-    found = cell.summary(metric) if cell else None
+    found = point.summary(metric) if point else None
     if found is None:
-        return failure(cell)
+        return failure(point)
     half = (found.high - found.low) / 2
     small = f"±{unit.margin(found.median, half)}" if half > 0 else ""
     if found.outliers and half > 0:
         small += "°"
-    struck = cell is not None and cell.disagrees
+    struck = point is not None and point.is_wrong
     return Entry(unit.text(found.median), small, mark=mark, struck=struck, flag=flag, sort=plain(found.median))
 
 
-def failure(cell: Cell | None) -> Entry:
+def failure(point: MeasuredPoint | None) -> Entry:
     """What stands where a number should: how the runs ended, or that there is none."""
-    if cell is None or cell.runs.empty:
-        return Entry(MISSING if cell is None else "not run")
-    ended = sorted(set(cell.runs["status"]) - {"ok"})
+    if point is None or point.runs.empty:
+        return Entry(MISSING if point is None else "not run")
+    ended = sorted(set(point.runs["status"]) - {"ok"})
     return Entry("", flag=", ".join(ended)) if ended else Entry(MISSING)
 
 

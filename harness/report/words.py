@@ -31,41 +31,15 @@ _LEAVES = {
     "seed": "seed",
     "stages": "stages forced",
 }
-_METRICS = {
-    "frames": "frames",
-    "pair_tests": "object/object tests",
-    "narrow_tests": "object/object tests on the exact shape",
-    "box_tests": "object/wall tests",
-    "pair_hits": "object/object hits",
-    "pair_contacts": "object/object contacts left alone",
-    "box_hits": "object/wall hits",
-    "pair_seconds": "object/object test time",
-    "box_seconds": "object/wall test time",
-    "response_seconds": "response time",
-    "run_seconds": "run time",
-    "setup_seconds": "set-up time",
-    "pair_seconds_per_frame": "object/object test time a frame",
-    "box_seconds_per_frame": "object/wall test time a frame",
-    "frames_per_second": "frames per second",
-    "simulated_per_second": "simulated seconds per second",
-    "energy_drift": "energy drift",
-    "momentum_drift": "momentum drift",
-    "max_penetration": "deepest penetration, of body size",
-    "peak_memory": "peak memory",
-}
 # Leaves whose values explain themselves in a label; others are written "leaf value".
 _SELF_EVIDENT = ("backend", "algorithm", "mesh", "response", "stages")
-# What a run finds, rather than what it costs or how wrong it is.
-_OUTCOMES = ("events", "pair_hits", "box_hits", "pair_contacts", "frames", "collision_rate", "pressure")
 # What `scene_text` says of a scene already.
 SCENE_LEAVES = ("count", "mesh", "faces", "hull_vertices", "shape", "box_ratio", "box", "box_side", "packing")
 
 
 def metric_title(name: str) -> str:
     """A metric in words: "object/object test time"."""
-    if name.endswith("_elapsed"):
-        return f"{metric_title(name.removesuffix('_elapsed'))}, elapsed"
-    return _METRICS.get(name, name.replace("_", " "))
+    return METRICS[name].heading if name in METRICS else name.replace("_", " ")
 
 
 def metric_unit(name: str) -> str:
@@ -74,7 +48,7 @@ def metric_unit(name: str) -> str:
     return unit.removeprefix("1") if unit != "1" else unit
 
 
-def is_clock(name: str) -> bool:
+def is_noisy(name: str) -> bool:
     """Whether repeats of the metric vary, so that it has an interval."""
     return name not in METRICS or METRICS[name].noisy
 
@@ -92,12 +66,12 @@ def setting(leaf: str, value: object) -> str:
 
 def more_is_better(name: str) -> bool:
     """Whether the larger of two values of the metric wins."""
-    return name.removesuffix("_elapsed").endswith("_per_second")
+    return name in METRICS and METRICS[name].more_is_better
 
 
 def is_ranked(name: str) -> bool:
     """Whether less, or more, of the metric is better: of what happens in a scene there is no best."""
-    return name not in _OUTCOMES
+    return name not in METRICS or METRICS[name].ranked
 
 
 def scene_text(parameters: Mapping[str, Any]) -> str:

@@ -21,9 +21,10 @@ from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from harness.backends.registry import packages
 from harness.errors import InputError
 from harness.measure.machine import fingerprint, machine_facts, package_versions
-from harness.runner.executor import Done
+from harness.runner.executor import FinishedJob
 from harness.runner.key import sources_hash
 from harness.runner.schedule import Job
 from harness.runner.servers import Servers, task_of
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
 CONNECT_TIMEOUT = 30.0  # s for the scheduler to answer
 WORKER_TIMEOUT = 120.0  # s for the first worker to join
 AHEAD = 2  # jobs handed out for each slot, so that no slot waits for the next
-DEATHS = 5  # of workers with the same run in hand, until the run is held to be the reason
-LOOK_EVERY = 5.0  # s between looks at who is there
+DEATHS = 5  # workers that die with the same run, until the run is taken for the reason
+LOOK_EVERY = 5.0  # s between checks of which workers there are
 LOCAL = "local:"
 
 
@@ -51,7 +52,7 @@ class Cluster:
     Raises
     ------
     InputError
-        The extra is not installed, nobody answers, or a worker runs another version of the program.
+        The extra is not installed, no scheduler answers, or a worker runs another version of the program.
     """
 
     def __init__(self, address: str) -> None:
@@ -79,13 +80,15 @@ class Cluster:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if kind is not None and self._sent:  # runs that nobody waits for any more
+        if kind is not None and self._sent:  # the results of these runs are not wanted any more
             with suppress(Exception):
                 self._client.cancel(list(self._sent), force=True)
                 self._client.run(stop_here, on_error="ignore")
         self._open.close()
 
-    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
+    def run(
+        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
+    ) -> Iterator[FinishedJob]:
         """See `harness.runner.executor.Executor`; `before` is called when a job is handed out."""
         waiting = deque(jobs)
         contents: dict[str, Future] = {}
@@ -99,7 +102,7 @@ class Cluster:
                 yield self._done(self._sent.pop(future), future)
 
     def _submit(self, job: Job, meshes: Mapping[Path, Mesh], contents: dict[str, Future]) -> Future:
-        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, asked=job.asked)
+        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, on_demand=job.on_demand)
         if mesh is not None and mesh.digest not in contents:
             # as a task, not as scattered data: it can be made again when the worker that holds it dies
             contents[mesh.digest] = self._client.submit(_itself, mesh, key=f"mesh-{mesh.digest}")
@@ -114,16 +117,16 @@ class Cluster:
         except TimeoutError:
             return []
 
-    def _done(self, job: Job, future: Future) -> Done:
+    def _done(self, job: Job, future: Future) -> FinishedJob:
         from distributed import KilledWorker
 
         try:
             outcome: Outcome = future.result()
         except KilledWorker as error:
             now, report = datetime.now(timezone.utc), Report("crashed", f"every worker that tried it died: {error}")
-            return Done(job, report, timing_grade=False, started=now)
+            return FinishedJob(job, report, timing_grade=False, started=now)
         alone = self._slots[outcome.host] == 1
-        return Done(job, outcome.report, timing_grade=alone, started=outcome.started, machine=outcome.machine)
+        return FinishedJob(job, outcome.report, timing_grade=alone, started=outcome.started, machine=outcome.machine)
 
     def _look(self) -> int:
         """How many slots there are now; workers that have joined are checked first.
@@ -200,7 +203,7 @@ class Cluster:
 
 @contextmanager
 def _inherited_by_children(number: signal.Signals, disposition: signal.Handlers) -> Iterator[None]:
-    """What processes started meanwhile do about a signal; only a program's main thread can say it."""
+    """How processes that are started meanwhile handle a signal; only a program's main thread can set that."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -232,7 +235,7 @@ class Outcome:
 
 def identity() -> Identity:
     """Of the process that calls."""
-    return Identity(socket.gethostname(), sources_hash(), package_versions())
+    return Identity(socket.gethostname(), sources_hash(), package_versions(packages()))
 
 
 def run_here(task: Task, mesh: Mesh | None) -> Outcome:

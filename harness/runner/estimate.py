@@ -45,8 +45,12 @@ class Estimate:
         return sum(known) / len(known) * len(each) if known else None
 
 
-def spoken(seconds: float) -> str:
-    """A time as people say it: "40 s", "12 min", "3 h 20 min"."""
+def duration_text(seconds: float) -> str:
+    """A time as people write it.
+
+    >>> duration_text(40), duration_text(700), duration_text(12000)
+    ('40 s', '12 min', '3 h 20 min')
+    """
     if seconds < 99.5:
         return f"{seconds:.0f} s" if seconds >= 0.95 else f"{seconds:.1f} s"
     minutes = round(seconds / 60)

@@ -1,4 +1,4 @@
-"""Who does the runs: this machine, one after another (here), or the workers of a cluster (`harness.runner.cluster`)."""
+"""Where runs are done: on this machine one after another, or on workers of a cluster (`harness.runner.cluster`)."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from harness.scene.mesh import Mesh
 
 
 @dataclass(frozen=True)
-class Done:
-    """A job that has come to an end.
+class FinishedJob:
+    """A job that has ended, and how.
 
     Parameters
     ----------
-    timing_grade : whether nothing else of the sweep ran on its machine meanwhile
+    timing_grade : whether no other run of the sweep was on its machine at the same time
     started : with its time zone
     machine : facts of where it ran; None for the machine of the sweep
     """
@@ -41,8 +41,10 @@ class Executor(Protocol):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None: ...
 
-    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
-        """Do the jobs, about in this order; each is returned when it ends.
+    def run(
+        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
+    ) -> Iterator[FinishedJob]:
+        """Do the jobs, about in this order; each is yielded when it ends.
 
         Parameters
         ----------
@@ -51,13 +53,13 @@ class Executor(Protocol):
         """
 
 
-class Alone:
+class LocalExecutor:
     """One run at a time on this machine, each on a core of its own."""
 
     def __init__(self) -> None:
         self._servers = Servers()
 
-    def __enter__(self) -> Alone:
+    def __enter__(self) -> LocalExecutor:
         return self
 
     def __exit__(
@@ -65,10 +67,14 @@ class Alone:
     ) -> None:
         self._servers.close()
 
-    def run(self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]) -> Iterator[Done]:
+    def run(
+        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
+    ) -> Iterator[FinishedJob]:
         """See `Executor`."""
         for job in jobs:
             before(job)
-            task, mesh = task_of(job.experiment, job.point, meshes, pinned=True, recorded=job.recorded, asked=job.asked)
+            task, mesh = task_of(
+                job.experiment, job.point, meshes, pinned=True, recorded=job.recorded, on_demand=job.on_demand
+            )
             started = datetime.now(timezone.utc)
-            yield Done(job, self._servers.run(task, mesh), timing_grade=True, started=started)
+            yield FinishedJob(job, self._servers.run(task, mesh), timing_grade=True, started=started)

@@ -1,4 +1,4 @@
-"""Before any run: load experiments, open their meshes in one limited child, and say all that is wrong at once."""
+"""Before any run: load experiments, open their meshes in one limited child process, and report all problems at once."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-from harness.backends.registry import missing, names
-from harness.backends.stages import StageError
+from harness.backends.registry import names
+from harness.backends.statement import missing
 from harness.errors import InputError, Problem
 from harness.experiment.experiment import Experiment
 from harness.experiment.load import find_experiments, load
 from harness.experiment.messages import listed, near, shown
 from harness.measure.metrics import METRICS
+from harness.methods.stages import StageError
 from harness.scene.mesh import Mesh
 from harness.scene.mesh_child import open_meshes
 
 
 class Prepared(NamedTuple):
-    """Experiments without a fault, their meshes by file, and the faults of the others."""
+    """The valid experiments, their meshes by file, and the problems of the others."""
 
     experiments: list[Experiment]
     meshes: dict[Path, Mesh]
@@ -58,14 +59,14 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
         except InputError as error:
             problems += error.problems
     meshes, broken = _open_meshes(loaded)
-    sound = []
+    valid = []
     for experiment in loaded:
         found = [*_names(experiment), *_mesh_problems(experiment, broken), *_namesakes(experiment, loaded)]
         found = found or list(_forced(experiment, meshes))
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
-            sound.append(experiment)
-    return Prepared(sound, meshes, list(dict.fromkeys(problems)))
+            valid.append(experiment)
+    return Prepared(valid, meshes, list(dict.fromkeys(problems)))
 
 
 def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], dict[Path, str]]:
@@ -90,7 +91,7 @@ def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Ite
             return
         if other.name == experiment.name:
             message = f'this is called "{experiment.name}" as {other.path} is; results are kept by name: rename one'
-            yield Problem(message, str(experiment.path))
+            yield experiment.problem((), message)
 
 
 def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Problem]:
@@ -99,8 +100,8 @@ def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Pro
     if not forcing:
         return
     from harness.runner.execute import plan_of  # half a second, which most experiments need not spend
+    from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import mesh_of
-    from harness.runner.setting import SceneSizeError, build_scene
     from harness.scene.launch import PlacementError
 
     refused: set[tuple[str, str]] = set()

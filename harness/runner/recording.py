@@ -8,6 +8,7 @@ import pandas as pd
 
 from harness.experiment.experiment import Point
 from harness.motion.hits import Outcome
+from harness.runner.point import is_stepped
 from harness.scene.scene import Scene
 from harness.store.recording import Recording, Surface
 
@@ -34,7 +35,7 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
     return Recording(
         shape=scene.shape,
         duration=trace.time,
-        dt=None if point.engine.algorithm == "predictive" else point.motion.dt,
+        dt=point.motion.dt if is_stepped(point) else None,
         half_box=scene.box.half,
         sizes=bodies.sizes,
         quaternions=bodies.quaternions,
@@ -61,6 +62,13 @@ def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
     Returns
     -------
     The key, or None where no run is small enough.
+
+    Examples
+    --------
+    >>> points = {"point": ["few", "many"], "count": [5, 50]}
+    >>> runs = pd.DataFrame({**points, "status": "ok", "events": 9, "run_seconds": 0.1})
+    >>> worth_recording(["few", "many"], runs)
+    'many'
     """
     if not {"events", "count", "run_seconds"}.issubset(runs.columns):
         return None

@@ -1,7 +1,7 @@
-"""References kept between runs: one file each, named by what it was made from, so that a stale one is never found.
+"""References kept between runs: one file each, named by a hash of what it was made from, so that none is ever stale.
 
-The points of a sweep share them, whichever process makes one first. A file appears whole or not at all, and whoever is
-killed while making one leaves nothing that counts. Where files cannot be kept, references are made anew.
+The points of a sweep share them, whichever process makes one first. A file appears whole or not at all, also when its
+process is killed. Where files cannot be kept, references are made anew.
 """
 
 from __future__ import annotations
@@ -18,19 +18,25 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.kernel_cache import user_cache
+
 Arrays = Mapping[str, NDArray[Any]]
 
-UNUSED = 30 * 86400.0  # s after which a reference that nobody asked for is forgotten
+UNUSED = 30 * 86400.0  # s after which a reference that was not used is removed
 
 
-def folder() -> Path:
-    """Where references are kept: in the user's cache."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "harness" / "references"
+def folder() -> Path | None:
+    """Where references are kept: in the user's cache, where there is one."""
+    cache = user_cache()
+    return None if cache is None else cache / "references"
 
 
 def kept(key: str, make: Callable[[], Arrays]) -> Arrays:
     """The reference of this name, made where it is not kept yet."""
-    path = folder() / f"{key}.npz"
+    home = folder()
+    if home is None:
+        return make()
+    path = home / f"{key}.npz"
     with suppress(OSError, ValueError, BadZipFile, EOFError), np.load(path) as found:
         arrays = {name: found[name] for name in found.files}
         os.utime(path)

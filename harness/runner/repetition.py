@@ -42,7 +42,7 @@ def fly_long_enough(fly: Callable[[], Outcome]) -> tuple[Outcome, int]:
     first = outcomes[0]
     if len(outcomes) == 1:
         return first, 1
-    means = {name: _mean(name, outcomes) for name in first.metrics if METRICS[name].kind == "clock"}
+    means = {name: _mean(name, outcomes) for name in first.metrics if METRICS[name].clock}
     return replace(first, metrics=first.metrics | means), len(outcomes)
 
 

@@ -1,8 +1,8 @@
 """Which runs a sweep has to do, and in what order.
 
-Blocks of one repeat of every point, each in random order: what drifts on the machine then meets all points alike. Where
-methods are compared, each block holds a control as well: one of its runs once more. Two equal things come apart by as
-much as the machine makes them, and no two others are told apart by less.
+Blocks of one repeat of every point, each in random order, so that a drift of the machine affects all points alike.
+Where methods are compared, each block holds a control as well: one of its runs once more. How far two equal runs differ
+is the noise of the machine, and no smaller difference of two methods is reported.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from harness.vocabulary import METHOD_LEAVES
 class Job:
     """One run to do: a repeat of a point, for the first experiment that lists it; or its control, or its recording.
 
-    `asked` are the metrics made on demand that any of the experiments names that list it.
+    `on_demand` are the metrics measured on demand alone that one of the experiments that list the point names.
     """
 
     experiment: Experiment
@@ -32,13 +32,13 @@ class Job:
     key: str
     repeat: int
     control: bool = False
-    asked: frozenset[str] = frozenset()
+    on_demand: frozenset[str] = frozenset()
     recorded: bool = False
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which runs are wanted.
+class RunSelection:
+    """Which runs a sweep is to do.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Choice:
     only: Mapping[str, Sequence[Any]] = field(default_factory=dict)
 
     def wants(self, parameters: Mapping[str, Any]) -> bool:
-        """Whether a point with these leaves and derived parameters is asked for."""
+        """Whether a point with these leaves and derived parameters is to be run."""
         return all(any(_same(parameters.get(leaf), value) for value in values) for leaf, values in self.only.items())
 
 
@@ -109,9 +109,9 @@ def schedule(
 
 
 def _controlled_point(experiment: Experiment, points: Sequence[Point], repeat: int) -> Point | None:
-    """The point whose run of this repeat is done twice: another each time, spread evenly over the experiment.
+    """The point whose run of this repeat is done twice: another for each repeat, at equal steps over the experiment.
 
-    None where nothing is to be told apart: by one method, or with too few repeats for an interval.
+    None where no methods are compared, or with too few repeats for an interval.
     """
     repeats = experiment.measure.repeats
     if not points or repeats < FEWEST_FOR_INTERVAL or not set(experiment.swept).intersection(METHOD_LEAVES):

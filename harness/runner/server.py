@@ -1,4 +1,4 @@
-"""A warm server: a process with everything that its backend's runs need imported and compiled, which forks once a run.
+"""A warm server: a process that has imported and compiled what the runs of its backend need, and forks for each run.
 
 `python -m harness.runner.server FD BACKEND` is the server; it speaks through the socket FD, which it inherits. Each run
 happens in a process forked from it (`harness.runner.isolation`), so that a backend that crashes, hangs, fills the
@@ -16,7 +16,9 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from harness.backends import registry
-from harness.runner.isolation import adopt_orphans, die_with_parent, run_isolated
+from harness.backends.statement import ask_strangers_here
+from harness.process_limits import adopt_orphans, die_with_parent
+from harness.runner.isolation import run_isolated
 from harness.runner.task import Task
 from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
@@ -31,6 +33,7 @@ def main() -> None:
     if os.getppid() != parent:
         return
     adopt_orphans()
+    ask_strangers_here()
     with suppress(EOFError, ConnectionError):  # the other side has gone
         _prepare(channel, sys.argv[2])
         _serve(channel)
@@ -54,6 +57,7 @@ def _serve(channel: Connection) -> None:
             meshes[received.digest] = received
             continue
         _warm_up(received)
+        channel.send("warm")
         report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
         if report is None:
             return

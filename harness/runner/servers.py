@@ -1,18 +1,31 @@
-"""The warm servers of a sweep, one a backend, started when first needed and ended with it."""
+"""The warm servers of a sweep, one a backend, started when first needed and ended with it.
+
+A server that dies, or is silent for longer than its run may take, is ended with all that it has started, and its run is
+done once more by a new one: whatever befell the server, it was most likely not this run's doing.
+"""
 
 from __future__ import annotations
 
 import os
 import socket
+import struct
 import subprocess
-import sys
+import uuid
 from collections.abc import Mapping
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
+from time import monotonic
 from types import TracebackType
+from typing import Any
 
+import psutil
+
+from harness.child_process import Ending
+from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
+from harness.python_child import python_command
 from harness.runner.task import Report, Task
 from harness.scene.mesh import Mesh
 
@@ -21,6 +34,14 @@ _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
 
+# s that a server may take, on a machine with other things to do: to start, to import and compile what a run calls,
+# beyond the time of a run to end it, and within a message. Longer, and it has been stopped, or hangs.
+_START, _WARM_UP, _BEYOND, _MESSAGE = 300.0, 900.0, 60.0, 60
+_LAST = 10.0  # s for the end of what is killed
+_TRIES = 2
+# In the environment of a server, and so of all that it starts: by it that is found, wherever it has gone to.
+_MARK = "HARNESS_SERVER"
+
 
 class Servers:
     """Runs tasks in isolated processes. A context: leaving it ends every process it started."""
@@ -28,6 +49,7 @@ class Servers:
     def __init__(self) -> None:
         self._servers: dict[str, _Server] = {}
         self._broken: dict[str, Report] = {}
+        self._interruptions = 0
 
     def __enter__(self) -> Servers:
         return self
@@ -44,7 +66,8 @@ class Servers:
         self._servers.clear()
 
     def interrupt(self) -> None:
-        """End every process, from another thread than the one that waits for a run."""
+        """End every process, from another thread than the one that waits for a run; its run is not tried again."""
+        self._interruptions += 1
         for server in list(self._servers.values()):
             server.hang_up()
 
@@ -57,20 +80,32 @@ class Servers:
         mesh : that it names
         """
         backend = task.point.engine.backend
-        if backend in self._broken:
-            return self._broken[backend]
+        interruptions = self._interruptions
+        for tried in range(1, _TRIES + 1):
+            if backend in self._broken:
+                return self._broken[backend]
+            report = self._try(backend, task, mesh, last=tried == _TRIES)
+            if report is not None:
+                return report
+            if self._interruptions > interruptions:
+                break
+        return Report("crashed", f'the server of backend "{backend}" ended unexpectedly')
+
+    def _try(self, backend: str, task: Task, mesh: Mesh | None, *, last: bool) -> Report | None:
+        """The report of a task; None if the server died over it."""
         if backend not in self._servers:
             server = _Server(backend)
             self._servers[backend] = server
             broken = server.start(task.timeout)
             if broken is not None:
                 self._servers.pop(backend).close()
+                if broken.status == "crashed" and not last:  # something may have ended it from outside
+                    return None
                 self._broken[backend] = broken
                 return broken
         report = self._servers[backend].run(task, mesh)
         if report is None:
             self._servers.pop(backend).close()
-            return Report("crashed", f'the server of backend "{backend}" ended unexpectedly')
         return report
 
 
@@ -82,20 +117,20 @@ def task_of(
     traced: bool = False,
     pinned: bool = False,
     recorded: bool = False,
-    asked: frozenset[str] | None = None,
+    on_demand: frozenset[str] | None = None,
 ) -> tuple[Task, Mesh | None]:
     """A run of a point under the limits of its experiment, and the mesh that it needs.
 
-    `asked` are the metrics to make that are made on demand alone; without, those that the experiment names.
+    `on_demand` are the metrics to measure that are measured on demand alone; without, those the experiment names.
     """
     mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
-    asked = asked_of(experiment) if asked is None else asked
+    on_demand = on_demand_of(experiment) if on_demand is None else on_demand
     digest = mesh.digest if mesh else None
-    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, asked), mesh
+    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, on_demand), mesh
 
 
-def asked_of(experiment: Experiment) -> frozenset[str]:
-    """The metrics that an experiment names and that are made on demand alone."""
+def on_demand_of(experiment: Experiment) -> frozenset[str]:
+    """The metrics that an experiment names and that are measured on demand alone."""
     return experiment.metrics & ON_DEMAND
 
 
@@ -109,16 +144,25 @@ class _Server:
 
     def __init__(self, backend: str) -> None:
         self._backend = backend
+        self._mark = uuid.uuid4().hex
         ours, theirs = socket.socketpair()
+        for option in (socket.SO_RCVTIMEO, socket.SO_SNDTIMEO):
+            ours.setsockopt(socket.SOL_SOCKET, option, struct.pack("ll", _MESSAGE, 0))
         with theirs:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "harness.runner.server", str(theirs.fileno()), backend],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                env=os.environ | _ONE_THREAD,
-                # what is sent to the sweep's whole group, as a terminal does, is for the sweep to answer
-                start_new_session=True,
-            )
+            try:
+                self._process = subprocess.Popen(
+                    python_command("harness.runner.server", str(theirs.fileno()), backend),
+                    pass_fds=[theirs.fileno()],
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,  # that is for results alone
+                    env=os.environ | _ONE_THREAD | {_MARK: self._mark},
+                    # what is sent to the sweep's whole group, as a terminal does, is for the sweep to answer
+                    start_new_session=True,
+                )
+            except OSError as error:
+                ours.close()
+                why = f"no process can be started: {error.strerror}"
+                raise InputError(f"{why}; every finished run is kept, and the same command does the rest") from error
         self._channel: Connection = Connection(ours.detach())
         self._sent: set[str] = set()
         self._ready = False
@@ -132,42 +176,84 @@ class _Server:
         """
         importing = f'importing backend "{self._backend}"'
         try:
-            self._channel.recv()  # started, which takes as long as it takes
-            if not self._channel.poll(timeout):
+            self._receive(_START)
+            try:
+                self._receive(timeout)
+            except TimeoutError:
                 return Report("timeout", f"{importing} did not end within {timeout:g} s")
-            self._channel.recv()
         except (EOFError, OSError):
-            self._process.wait()
-            code = self._process.returncode
-            how = f"signal {-code}" if code < 0 else f"exit code {code}"
-            return Report("crashed", f"{importing} ended its process with {how}")
+            return Report("crashed", f"{importing} {self._end()}")
         self._ready = True
         return None
 
     def run(self, task: Task, mesh: Mesh | None) -> Report | None:
-        """The report of a task; None if the server has died."""
+        """The report of a task; None if the server has died, or is silent."""
         try:
             if mesh is not None and mesh.digest not in self._sent:
                 self._channel.send(mesh)
                 self._sent.add(mesh.digest)
             self._channel.send(task)
-            report: Report = self._channel.recv()
+            self._receive(_WARM_UP)
+            report: Report = self._receive(task.timeout + _BEYOND)
         except (EOFError, OSError):
             return None
         return report
 
     def hang_up(self) -> None:
         """Let the server see that nobody listens any more; it ends its run and itself."""
-        with socket.socket(fileno=os.dup(self._channel.fileno())) as copy:
+        with suppress(OSError), socket.socket(fileno=os.dup(self._channel.fileno())) as copy:
             copy.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
         """End the server and the run that it may have in flight."""
         self._channel.close()
-        if not self._ready:  # it has no run to end, and may hang
-            self._process.kill()
-        try:
-            self._process.wait(timeout=5)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        if self._ready:  # else it has no run to end, and may hang
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(timeout=5)
+        if self._process.poll() != 0:
+            self._end()
+
+    def _receive(self, within: float) -> Any:
+        """The next message.
+
+        Raises
+        ------
+        TimeoutError
+            If none begins within so many seconds.
+        EOFError, OSError
+            If the server has died.
+        """
+        if not self._channel.poll(within):
+            raise TimeoutError
+        return self._channel.recv()
+
+    def _end(self) -> str:
+        """End the process and all that it has started; how it ended, if it did so by itself."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=1)
+        how = _told(self._process.poll())
+        self._process.kill()
+        self._process.wait()
+        deadline = monotonic() + _LAST
+        while (left := _marked(self._mark)) and monotonic() < deadline:  # what it has started may start more
+            for process in left:
+                with suppress(psutil.Error):
+                    process.kill()
+            psutil.wait_procs(left, timeout=0.1)
+        return how
+
+
+def _told(code: int | None) -> str:
+    if code is None:
+        return "did not come to its end"
+    return f"ended its process with {Ending(code)}"
+
+
+def _marked(mark: str) -> list[psutil.Process]:
+    """The processes, but for those that have ended, with a mark of ours in their environment."""
+    found = []
+    for process in psutil.process_iter():
+        with suppress(psutil.Error):
+            if process.environ().get(_MARK) == mark and process.status() != psutil.STATUS_ZOMBIE:
+                found.append(process)
+    return found

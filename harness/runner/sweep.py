@@ -12,7 +12,8 @@ from typing import Any, NamedTuple, Protocol
 
 import pandas as pd
 
-from harness.backends.registry import missing
+from harness.backends.registry import packages
+from harness.backends.statement import missing
 from harness.errors import InputError
 from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
@@ -21,12 +22,12 @@ from harness.measure.metrics import METRICS
 from harness.measure.verdicts import expected_refusals, judge
 from harness.motion.hits import Trace
 from harness.runner.estimate import Estimate
-from harness.runner.executor import Alone, Done, Executor
+from harness.runner.executor import Executor, FinishedJob, LocalExecutor
 from harness.runner.key import point_key
 from harness.runner.recording import worth_recording
-from harness.runner.schedule import Choice, Job, Schedule, schedule
-from harness.runner.servers import Servers, asked_of, mesh_of, task_of
-from harness.runner.setting import derived_parameters
+from harness.runner.scene_of_point import derived_parameters
+from harness.runner.schedule import Job, RunSelection, Schedule, schedule
+from harness.runner.servers import Servers, mesh_of, on_demand_of, task_of
 from harness.runner.task import Report
 from harness.scene.mesh import Mesh
 from harness.store.database import Database
@@ -46,11 +47,12 @@ class Summary:
     kept : runs that earlier sweeps had done already, by status
     done : runs done now, by status
     controls : control runs done now
-    experiments : by the name of each experiment, the statuses of its runs of now; a shared run counts for the first
+    experiments : by the name of each experiment, the statuses of its runs of this sweep; a shared run counts for the
+        first
     seconds : by the same names, the elapsed time of these runs
     broken : experiment and statement of every expectation that fails
     refused : runs that were rejected, as their experiment expects
-    lacking : of every backend that is not installed, and whose points were passed over, why
+    lacking : for every backend that is not installed, so that its points were left out, the reason
     """
 
     kept: Counter[str] = field(default_factory=Counter)
@@ -69,11 +71,11 @@ class Summary:
         return statuses.total() > statuses["ok"] + self.refused or bool(self.broken)
 
 
-class Watcher(Protocol):
-    """Who is told how a sweep goes; nothing is timed meanwhile, unless a cluster does the runs."""
+class ProgressListener(Protocol):
+    """Is called as a sweep makes progress, between runs: only on a cluster may another run be timed meanwhile."""
 
     def begin(self, jobs: Sequence[Job], estimate: Estimate) -> None:
-        """These are the runs to do."""
+        """The sweep begins, with these runs to do."""
 
     def before(self, job: Job) -> None:
         """A run is about to begin."""
@@ -83,10 +85,10 @@ class Watcher(Protocol):
 
 
 class Work(NamedTuple):
-    """What a sweep would do: the key of each point by its id, those wanted, the runs, how long they may take.
+    """What a sweep has to do: the key of each point by its id, those wanted, the runs, how long they may take.
 
-    Points whose backend is an extra that is not installed are passed over, and said in `lacking`: of several backends
-    those that there are can be measured, and the next sweep after an installation does the rest.
+    Points whose backend is an extra that is not installed are left out, with the reason in `lacking`: the other
+    backends can be measured, and the next sweep after the installation does the rest.
     """
 
     keys: dict[int, str]
@@ -102,7 +104,7 @@ def work_of(
     history: History | None,
     *,
     command: str,
-    choice: Choice,
+    selection: RunSelection,
 ) -> Work:
     """The runs that a sweep has to do. Nothing is written.
 
@@ -111,16 +113,16 @@ def work_of(
     experiments, meshes : loaded and opened
     history : what is measured already; None for nothing
     command : the command line that repeats the sweep: where it asks for fresh runs and was broken off, it goes on
-    choice : which runs are wanted
+    selection : which runs are wanted
 
     Raises
     ------
     InputError
-        If no point is what `choice` asks for.
+        If no point matches `selection`.
     """
     keys: dict[int, str] = {}
     parameters: dict[str, dict[str, Any]] = {}
-    asked: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
+    on_demand: defaultdict[str, frozenset[str]] = defaultdict(frozenset)
     backends = sorted({point.engine.backend for experiment in experiments for point in experiment.points})
     lacking = {name: why for name in backends if (why := missing(name)) is not None}
     for experiment in experiments:
@@ -128,21 +130,21 @@ def work_of(
             mesh = mesh_of(experiment, point, meshes)
             key = keys[id(point)] = point_key(point, mesh)
             parameters[key] = _parameters(point, mesh)
-            asked[key] |= asked_of(experiment)
-    wanted = {key for key, found in parameters.items() if choice.wants(found)}
-    if choice.only and parameters and not wanted:
+            on_demand[key] |= on_demand_of(experiment)
+    wanted = {key for key, found in parameters.items() if selection.wants(found)}
+    if selection.only and parameters and not wanted:
         raise InputError("--only: no point of these experiments has these values")
     wanted = {key for key in wanted if parameters[key]["backend"] not in lacking}
     if history is None:
         status: dict[str, dict[int, str]] = {key: {} for key in parameters}
         controlled: set[tuple[str, int]] = set()
     else:
-        sweeps = history.broken_off(command) if choice.fresh else None
+        sweeps = history.unfinished_sweeps(command) if selection.fresh else None
         status, controlled = history.done(parameters, sweeps), history.controlled(parameters, sweeps)
-        for key, repeat in history.without(asked):
+        for key, repeat in history.lacking_metrics(on_demand):
             status[key].pop(repeat, None)
-    found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=choice.retry)
-    jobs = [job if job.control else replace(job, asked=asked[job.key]) for job in found.jobs]
+    found = schedule(experiments, keys, wanted, status, controlled, random.Random(), retry=selection.retry)
+    jobs = [job if job.control else replace(job, on_demand=on_demand[job.key]) for job in found.jobs]
     found = found._replace(jobs=jobs)
     estimate = Estimate(history.durations() if history else {}, parameters)
     return Work(keys, wanted, found, estimate, list(lacking.values()))
@@ -154,9 +156,9 @@ def sweep(
     database: Database,
     *,
     command: str,
-    watch: Watcher,
+    progress: ProgressListener,
     executor: Executor | None = None,
-    choice: Choice | None = None,
+    selection: RunSelection | None = None,
 ) -> Summary:
     """Do what is missing of these experiments and keep it.
 
@@ -166,31 +168,31 @@ def sweep(
     meshes : every mesh that they name, opened
     database : open for writing
     command : the command line that repeats the sweep
-    watch : is told how it goes
-    executor : who does the runs; without, this machine, one run at a time
-    choice : which of the runs to do; without, those that are missing
+    progress : is called before and after each run
+    executor : where the runs are done; without, on this machine, one at a time
+    selection : which of the runs to do; without, those that are missing
 
     Raises
     ------
     InputError
-        If the database cannot take what was measured, or no run is what `choice` asks for.
+        If the database cannot be written to, or no point matches `selection`.
     """
-    work = work_of(experiments, meshes, database.history, command=command, choice=choice or Choice())
+    work = work_of(experiments, meshes, database.history, command=command, selection=selection or RunSelection())
     machine = machine_facts()
     machine["fingerprint"] = fingerprint(machine)
-    number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions())
+    number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions(packages()))
     listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
     summary = Summary(work.schedule.kept, lacking=work.lacking)
-    watch.begin(work.schedule.jobs, work.estimate)
-    with executor or Alone() as doing:
-        for done in doing.run(work.schedule.jobs, meshes, watch.before):
-            _keep(database, number, done)
-            _count(summary, done)
-            work.estimate.learn(done.job, done.report.conditions.get("seconds", 0.0))
-            watch.after(done.job, done.report)
-        for done in doing.run(_recordings(experiments, work.keys, database), meshes, lambda _: None):
-            if done.report.recording is not None:
-                database.add_recording(done.job.key, done.report.recording)
+    progress.begin(work.schedule.jobs, work.estimate)
+    with executor or LocalExecutor() as opened:
+        for finished in opened.run(work.schedule.jobs, meshes, progress.before):
+            _keep(database, number, finished)
+            _count(summary, finished)
+            work.estimate.learn(finished.job, finished.report.conditions.get("seconds", 0.0))
+            progress.after(finished.job, finished.report)
+        for finished in opened.run(_recordings(experiments, work.keys, database), meshes, lambda _: None):
+            if finished.report.recording is not None:
+                database.add_recording(finished.job.key, finished.report.recording)
     refused: set[tuple[str, int]] = set()
     for experiment in experiments:
         table = runs(database.path, [experiment.name])
@@ -205,12 +207,12 @@ def sweep(
     return summary
 
 
-def _keep(database: Database, sweep: int, done: Done) -> None:
+def _keep(database: Database, sweep: int, finished: FinishedJob) -> None:
     """Put a run, or a control, into the database."""
-    job, report = done.job, done.report
+    job, report = finished.job, finished.report
     if job.control:
-        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].kind == "clock"}
-        database.add_control(sweep, job.key, job.repeat, report.status, clocks, done.machine)
+        clocks = {name: value for name, value in report.metrics.items() if METRICS[name].clock}
+        database.add_control(sweep, job.key, job.repeat, report.status, clocks, finished.machine)
         return
     database.add_run(
         sweep,
@@ -220,16 +222,16 @@ def _keep(database: Database, sweep: int, done: Done) -> None:
         report.reason,
         report.stderr,
         {name: (value, METRICS[name].unit) for name, value in report.metrics.items()},
-        timing_grade=done.timing_grade,
-        started=done.started,
+        timing_grade=finished.timing_grade,
+        started=finished.started,
         plan=asdict(report.plan) if report.plan else None,
-        machine=done.machine,
+        machine=finished.machine,
         conditions=report.conditions,
     )
 
 
 def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], database: Database) -> list[Job]:
-    """Of each experiment the scene that its page should replay, where that is still to be recorded."""
+    """For each experiment, the scene that its page should replay, unless it is recorded already."""
     jobs: dict[str, Job] = {}
     for experiment in experiments:
         points = {keys[id(point)]: point for point in experiment.points}
@@ -241,14 +243,14 @@ def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], data
     return list(jobs.values())
 
 
-def _count(summary: Summary, done: Done) -> None:
-    if done.job.control:
+def _count(summary: Summary, finished: FinishedJob) -> None:
+    if finished.job.control:
         summary.controls += 1
         return
-    name, status = done.job.experiment.name, done.report.status
+    name, status = finished.job.experiment.name, finished.report.status
     summary.done[status] += 1
     summary.experiments.setdefault(name, Counter())[status] += 1
-    summary.seconds[name] += done.report.conditions.get("seconds", 0.0)
+    summary.seconds[name] += finished.report.conditions.get("seconds", 0.0)
 
 
 def run(experiment: Experiment, meshes: Meshes) -> pd.DataFrame:
@@ -282,7 +284,7 @@ def run(experiment: Experiment, meshes: Meshes) -> pd.DataFrame:
 
 
 class RunError(Exception):
-    """A single run that was asked for did not come to its end; `report` says how it ended."""
+    """A single run failed; `report` says how it ended."""
 
     def __init__(self, report: Report) -> None:
         super().__init__(f"{report.status}: {report.reason}")

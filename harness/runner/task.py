@@ -1,4 +1,4 @@
-"""What is asked of a run's process, and what comes back."""
+"""What the process of a run is given, a task, and what it sends back, a report."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from harness.experiment.experiment import Point
+from harness.methods.stages import Plan
 from harness.motion.hits import Trace
-from harness.motion.plan import Plan
 from harness.store.recording import Recording
 from harness.vocabulary import Status
 
@@ -25,7 +25,7 @@ class Task:
     traced : keep every hit
     pinned : keep it on one core, where the system allows
     recorded : keep what a replay shows; its clocks are not to be used
-    asked : metrics to make that are made on demand alone
+    on_demand : metrics to measure that are measured on demand alone
     """
 
     point: Point
@@ -35,7 +35,7 @@ class Task:
     traced: bool = False
     pinned: bool = False
     recorded: bool = False
-    asked: frozenset[str] = frozenset()
+    on_demand: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ class Report:
     Parameters
     ----------
     status, reason : how it ended, and why, in a sentence, if not well
-    conditions : what it met: see `harness.measure.conditions`; and `flights`, how often the scene was flown
+    conditions : of the machine meanwhile (`harness.measure.conditions`), and `flights`, how often the scene was flown
     stderr : the tail of what it printed
-    recording : what a replay shows, if it was asked for
+    recording : what a replay shows, if the task asks for it
     """
 
     status: Status
@@ -60,5 +60,5 @@ class Report:
     recording: Recording | None = None
 
     def with_circumstances(self, stderr: str, conditions: Mapping[str, float]) -> Report:
-        """The same report with what the run printed and met."""
+        """The same report, with what the run printed and the conditions of the machine."""
         return replace(self, stderr=stderr, conditions={**self.conditions, **conditions})

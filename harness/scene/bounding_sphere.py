@@ -28,6 +28,12 @@ def bounding_sphere(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], f
     centre : (3,) float array
     radius : float
         No point is further from the centre than this; it exceeds the least possible by rounding only.
+
+    Examples
+    --------
+    >>> centre, radius = bounding_sphere(np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.5, 0.0]]))
+    >>> centre.tolist(), radius
+    ([1.0, 0.0, 0.0], 1.0)
     """
     # Shifted and scaled so that neither squares nor cancellation lose digits, wherever the points are.
     low, high = points.min(axis=0), points.max(axis=0)

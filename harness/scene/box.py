@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 class Box:
     """An axis-aligned box.
 
+    >>> Box([2.0, 2.0, 1.0]).volume
+    32.0
+
     Parameters
     ----------
     half : (3,) float array, m; half the sides, read-only

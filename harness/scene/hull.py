@@ -23,15 +23,6 @@ class Hull:
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
 
-    @property
-    def inradius(self) -> float:
-        """Radius of the largest sphere around the origin that the hull holds; 0 if the origin is outside."""
-        a, b, c = (self.vertices[corner] for corner in self.faces.T)
-        normals = np.cross(b - a, c - a)
-        lengths = np.linalg.norm(normals, axis=1)
-        heights = np.einsum("ij,ij->i", normals, a)[lengths > 0.0] / lengths[lengths > 0.0]
-        return max(0.0, float(heights.min()))
-
 
 def convex_hull(points: NDArray[np.float64]) -> Hull:
     """The convex hull of points of any extent in three dimensions.
@@ -49,6 +40,15 @@ def convex_hull(points: NDArray[np.float64]) -> Hull:
     ------
     InputError
         If the points are too few or too flat to enclose a volume.
+
+    Examples
+    --------
+    Of the corners of a cube and its centre, the centre is no vertex of the hull:
+
+    >>> corners = [[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]
+    >>> hull = convex_hull(np.array([*corners, [0.0, 0.0, 0.0]]))
+    >>> len(hull.vertices), len(hull.faces)
+    (8, 12)
     """
     from scipy.spatial import ConvexHull, QhullError  # half a second, which a run whose mesh is at hand need not spend
 

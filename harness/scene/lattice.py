@@ -66,7 +66,7 @@ def sites(count: int, distance: float, room: NDArray[np.float64]) -> tuple[NDArr
     else:
         spacing = max(spacings)
     lattice, axes = choices[int(np.argmax(spacings))]
-    found = _spread(lattice, room[axes], spacing * distance)
+    found = _stretched(lattice, room[axes], spacing * distance)
     # What rounding let in is not offered as room.
     return found[:, np.argsort(axes)], max(spacing * (1 - 2 * EXACTLY), 1.0) * distance
 
@@ -94,7 +94,7 @@ def _count(lattice: Lattice, room: NDArray[np.float64]) -> int:
     )
 
 
-def _spread(lattice: Lattice, room: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+def _stretched(lattice: Lattice, room: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
     """The sites in a room, drawn apart along each axis until they reach its walls."""
     scaled = room / spacing
     parts = []

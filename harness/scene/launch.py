@@ -13,7 +13,7 @@ from harness.scene.relaxation import overlapping, relaxed
 # No packing of equal spheres, in a box or without one, is denser (Kepler's conjecture; Hales 2005).
 DENSEST = float(np.pi / np.sqrt(18))
 JAMMING = 0.64  # equal spheres in disorder are no denser (Bernal and Mason 1960)
-# Up to FEW bodies it costs nothing to try what only works in small boxes; above MANY the last way may take minutes.
+# Up to FEW bodies it is cheap to try what works in small boxes only; above MANY the last way may take minutes.
 FEW, MANY = 1000, 5000
 SMALLER = "lower size or enlarge the box"
 ADVICE = "lower count or box_ratio, or set overlap: allow"
@@ -26,8 +26,8 @@ class PlacementError(Exception):
 def place(radii: NDArray[np.float64], box: Box, rng: np.random.Generator, overlap: bool) -> NDArray[np.float64]:
     """Random centres of bounding spheres inside a box.
 
-    At random one after another if that succeeds; else on a lattice, a random choice of its sites, each shaken as far as
-    its neighbours allow; else anywhere and then pushed apart.
+    At random one after another if that succeeds; else on a lattice, at a random choice of its sites, each displaced at
+    random as far as its neighbours allow; else anywhere and then pushed apart.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def orientations(rng: np.random.Generator, n: int) -> NDArray[np.float64]:
 
 
 def _refuse_impossible(radii: NDArray[np.float64], box: Box) -> None:
-    """Raise for what no placement can achieve, as far as that can be told at once."""
+    """Raise for bodies that no placement can fit, as far as a quick test can tell."""
     packing = _packing(radii, box)
     if packing > 1:
         raise PlacementError(
@@ -106,8 +106,8 @@ def _refuse_impossible(radii: NDArray[np.float64], box: Box) -> None:
 
 def _at_random(radii: NDArray[np.float64], box: Box, rng: np.random.Generator) -> NDArray[np.float64]:
     """One after another, largest first: where as many of the largest as found room are; all, in order, if all did."""
-    hopeless = radii.min() == radii.max() and _packing(radii, box) > SATURATION
-    if hopeless and len(radii) > FEW:
+    too_dense = radii.min() == radii.max() and _packing(radii, box) > SATURATION
+    if too_dense and len(radii) > FEW:
         return np.empty((0, 3))
     order = np.argsort(-radii, kind="stable")
     found = add_at_random(radii[order], box.half, rng)
@@ -119,21 +119,21 @@ def _at_random(radii: NDArray[np.float64], box: Box, rng: np.random.Generator) -
 
 
 def _on_lattice(radii: NDArray[np.float64], box: Box, rng: np.random.Generator) -> NDArray[np.float64]:
-    """A random choice of lattice sites, each shaken as far as its neighbours allow; all as far apart as the largest."""
+    """Random lattice sites, as far apart as the largest bodies need, each displaced as far as its neighbours allow."""
     radius = float(radii.max())
     inner = np.maximum(box.half - radius, 0)
     places, spacing = sites(len(radii), 2 * radius, 2 * inner)
     chosen = places[rng.permutation(len(places))[: len(radii)]]
     slack = max(spacing / 2 - radius, 0) * (1 - 1e-9)
-    shaken = chosen + directions(rng, len(chosen)) * slack * np.cbrt(rng.random((len(chosen), 1)))
+    displaced = chosen + directions(rng, len(chosen)) * slack * np.cbrt(rng.random((len(chosen), 1)))
     # Back into the box: a site is in it, and what is nearest to a point in a convex set is no further from the site.
-    return np.clip(shaken, -inner, inner)
+    return np.clip(displaced, -inner, inner)
 
 
 def _pushed_apart(radii: NDArray[np.float64], box: Box, rng: np.random.Generator) -> NDArray[np.float64]:
     """Anywhere, then pushed apart; none if some still overlap, or if that is too slow or too dense to try."""
-    hopeless = radii.min() == radii.max() and _packing(radii, box) > JAMMING
-    if hopeless or len(radii) > MANY:
+    too_dense = radii.min() == radii.max() and _packing(radii, box) > JAMMING
+    if too_dense or len(radii) > MANY:
         return np.empty((0, 3))
     positions = relaxed(radii, box.half, rng)
     return np.empty((0, 3)) if len(overlapping(positions, radii)) else positions

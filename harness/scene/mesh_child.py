@@ -1,30 +1,27 @@
 """Reads mesh files in one child process with limits, so that a hostile or broken file costs only itself.
 
-    python -m harness.scene.mesh_child FOLDER MEMORY TIMEOUT PATH...
+    python -m harness.scene.mesh_child FD FOLDER MEMORY TIMEOUT PATH...
 
-The child writes a line of JSON on its standard output when it is ready and after each file; the arrays travel as .npz
-files in a temporary folder, never as pickles.
+The child sends JSON through the socket FD when it is ready and after each file; the arrays travel as .npz files in a
+temporary folder, never as pickles.
 """
 
 from __future__ import annotations
 
 import json
-import math
 import os
-import queue
-import resource
 import signal
-import subprocess
 import sys
 import tempfile
-import threading
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
+from harness.child_process import Channel, Child, Ending
 from harness.errors import InputError, Problem
+from harness.process_limits import isolate, limit
 from harness.scene.hull import Hull
 from harness.scene.mesh import Mesh
 
@@ -79,32 +76,19 @@ def _read_some(paths: list[Path], memory: int, timeout: float) -> dict[Path, Mes
     """One child's work, up to and with the file that ends it; at least the first."""
     results: dict[Path, Mesh | str] = {}
     with tempfile.TemporaryDirectory(prefix="harness-meshes-") as folder:
-        command = [sys.executable, "-m", "harness.scene.mesh_child", folder, str(memory), str(timeout)]
-        child = subprocess.Popen(
-            command + [str(path.absolute()) for path in paths],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            cwd=folder,
-            env=_environment(),
-        )
-        try:
-            assert child.stdout is not None
-            lines = _lines(child.stdout)
-            limit = START_SECONDS
-            lines.get(timeout=limit)
-            limit = timeout
+        arguments = [folder, str(memory), str(timeout), *(str(path.absolute()) for path in paths)]
+        with Child.spawn("harness.scene.mesh_child", arguments, _environment(), folder) as child:
+            seconds = START_SECONDS
+            answer = child.receive(seconds)
             for path in paths:
-                line = lines.get(timeout=limit)
-                if not line:
-                    results[path] = _last_words(path, child.wait(), timeout)
+                if isinstance(answer, bytes):
+                    seconds = timeout
+                    answer = child.receive(seconds)
+                if not isinstance(answer, bytes):
+                    late = answer == "timeout"
+                    results[path] = _too_long(path, seconds) if late else _why_it_ended(path, child.end(), timeout)
                     break
-                results[path] = _received(json.loads(line))
-        except queue.Empty:
-            results[paths[len(results)]] = _too_long(paths[len(results)], limit)
-        finally:
-            child.kill()
-            child.wait()
+                results[path] = _received(json.loads(answer))
     return results
 
 
@@ -116,30 +100,15 @@ def _environment() -> dict[str, str]:
     return os.environ | threads | {"PYTHONPATH": path}
 
 
-def _lines(stream: IO[bytes]) -> queue.Queue[bytes]:
-    """The lines of a stream, as they come; an empty one at its end, again and again."""
-    lines: queue.Queue[bytes] = queue.Queue()
-
-    def pump() -> None:
-        with stream:
-            for line in stream:
-                lines.put(line)
-        lines.put(b"")
-        lines.put(b"")
-
-    threading.Thread(target=pump, daemon=True).start()
-    return lines
-
-
-def _last_words(path: Path, code: int, timeout: float) -> str:
+def _why_it_ended(path: Path, ending: Ending, timeout: float) -> str:
     """Why the child ended while it read a file."""
-    if code == -signal.SIGXCPU:
+    if ending.signal == signal.SIGXCPU:
         return _too_long(path, timeout)
-    if code == -signal.SIGKILL:
+    if ending.killed:
         return f"{path.name}: reading it was killed (SIGKILL), as a system does that runs out of memory"
-    if code < 0:
-        return f"{path.name}: reading it crashed ({signal.Signals(-code).name})"
-    return f"{path.name}: the reader ended without an answer (exit {code})"
+    if ending.signal:
+        return f"{path.name}: reading it crashed ({ending.signal_name})"
+    return f"{path.name}: the reader ended without an answer (exit {ending.code})"
 
 
 def _too_long(path: Path, timeout: float) -> str:
@@ -168,26 +137,21 @@ def _received(said: Mapping[str, Any]) -> Mesh | str:
     )
 
 
-def _serve(folder: Path, memory: int, timeout: float, paths: Sequence[Path]) -> None:
+def _serve(answers: Channel, folder: Path, memory: int, timeout: float, paths: Sequence[Path]) -> None:
     """The child's side."""
     from harness.scene.mesh_file import read_mesh
 
-    # The parsers may print; what they say must not look like ours.
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    _limit(resource.RLIMIT_AS, _address_space() + memory)
-    print("{}", file=answers, flush=True)
+    limit(memory=memory)
+    answers.send(b"{}")
     for place, path in enumerate(paths):
-        used = resource.getrusage(resource.RUSAGE_SELF)
-        _limit(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + timeout))
+        limit(processor=timeout)
         try:
             answer = _sent(read_mesh(path), folder / f"{place}.npz")
         except InputError as error:
             answer = {"error": str(error)}
         except MemoryError:
             answer = {"error": f"{path.name}: reading it takes more than {memory / GIB:.3g} GiB of memory"}
-        print(json.dumps(answer), file=answers, flush=True)
+        answers.send(json.dumps(answer).encode())
 
 
 def _sent(mesh: Mesh, file: Path) -> dict[str, object]:
@@ -210,20 +174,8 @@ def _sent(mesh: Mesh, file: Path) -> dict[str, object]:
     }
 
 
-def _limit(what: int, soft: int) -> None:
-    """Lower a limit of this process, and leave the hard one, which could not be raised again."""
-    _, hard = resource.getrlimit(what)
-    resource.setrlimit(what, (soft if hard == resource.RLIM_INFINITY else min(soft, hard), hard))
-
-
-def _address_space() -> int:
-    """Bytes of address space this process has now, or 0 where the system does not say."""
-    try:
-        pages = int(Path("/proc/self/statm").read_text().split()[0])
-    except OSError:
-        return 0
-    return pages * resource.getpagesize()
-
-
 if __name__ == "__main__":
-    _serve(Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]), [Path(name) for name in sys.argv[4:]])
+    isolate()
+    _serve(
+        Channel(int(sys.argv[1])), Path(sys.argv[2]), int(sys.argv[3]), float(sys.argv[4]), [*map(Path, sys.argv[5:])]
+    )

@@ -211,7 +211,7 @@ def _notes(about: Topology, cut: Triangles, thin: int) -> tuple[str, ...]:
     """What a person should know of a mesh that is allowed all the same."""
     counts = (
         (about.boundary, "open: {} boundary {}", ("edge", "edges")),
-        (about.crowded, "non-manifold: {} {} of more than two faces", ("edge", "edges")),
+        (about.nonmanifold, "non-manifold: {} {} of more than two faces", ("edge", "edges")),
         (about.turned, "inconsistent: faces on the two sides of {} {} are turned contrary ways", ("edge", "edges")),
         (about.pieces if about.pieces > 1 else 0, "in {} {}", ("piece", "pieces that share no vertex")),
         (cut.degenerate + thin, "{} degenerate {} without area left out", ("face", "faces")),

@@ -8,6 +8,7 @@ the way of a sphere no larger, at any ratio of sizes.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,14 +45,51 @@ def add_at_random(radii: Floats, half: Floats, rng: np.random.Generator) -> Floa
     cells = np.array([_cells(2 * radii[k], int((levels == level).sum()), half) for level, k in enumerate(first)])
     ends = np.cumsum(cells.prod(axis=1))
     heads = np.full(ends[-1], -1)
-    grid = (levels, cells, ends - cells.prod(axis=1), radii[first], heads, np.full(count, -1))
+    grids = _Grids(levels, cells, ends - cells.prod(axis=1), radii[first], heads, np.full(count, -1))
+    spheres = _Spheres(positions, radii, half)
 
     done, tries = 0, TRIES * count + 100_000
     while done < count and tries > 0:
         draws = rng.random((min(tries, max(1024, min(4 * (count - done), 1 << 18))), 3))
-        done = _add(done, positions, radii, half, draws, *grid)
+        done = _add(done, spheres, draws, grids)
         tries -= len(draws)
     return positions[:done]
+
+
+class _Spheres(NamedTuple):
+    """Those to place.
+
+    Attributes
+    ----------
+    positions : (n, 3) m, written as they are placed
+    radii : (n,) m, the largest first
+    half : (3,) m, half the sides of the box
+    """
+
+    positions: Floats
+    radii: Floats
+    half: Floats
+
+
+class _Grids(NamedTuple):
+    """A grid for each factor of two in size; a sphere stands in that of its own.
+
+    Attributes
+    ----------
+    levels : (n,) of each sphere
+    cells : (levels, 3) along each axis
+    offsets : (levels,) the first cell of each level in `heads`
+    largest : (levels,) m, the largest radius
+    heads : (cells,) the sphere placed last in each cell, or -1
+    following : (n,) the sphere placed before in the same cell, or -1
+    """
+
+    levels: Integers
+    cells: Integers
+    offsets: Integers
+    largest: Floats
+    heads: Integers
+    following: Integers
 
 
 def _cells(diameter: float, count: int, half: Floats) -> Integers:
@@ -63,57 +101,36 @@ def _cells(diameter: float, count: int, half: Floats) -> Integers:
 
 
 @kernel
-def _add(
-    done: int,
-    positions: Floats,
-    radii: Floats,
-    half: Floats,
-    draws: Floats,
-    levels: Integers,
-    cells: Integers,
-    offsets: Integers,
-    largest: Floats,
-    heads: Integers,
-    following: Integers,
-) -> int:
+def _add(done: int, spheres: _Spheres, draws: Floats, grids: _Grids) -> int:
     """Place spheres from `done` on with (m, 3) uniform draws until either are used up; returns how many are placed."""
     place = np.empty(3)
+    radii, half = spheres.radii, spheres.half
     for draw in draws:
         if done == len(radii):
             break
         for axis in range(3):
             place[axis] = (2 * draw[axis] - 1) * max(half[axis] - radii[done], 0.0)
-        if _free(done, place, positions, radii, half, levels, cells, offsets, largest, heads, following):
-            positions[done] = place
-            cell = _cell(place, half, cells[levels[done]], offsets[levels[done]])
-            following[done] = heads[cell]
-            heads[cell] = done
+        if _free(done, place, spheres, grids):
+            spheres.positions[done] = place
+            level = grids.levels[done]
+            cell = _cell(place, half, grids.cells[level], grids.offsets[level])
+            grids.following[done] = grids.heads[cell]
+            grids.heads[cell] = done
             done += 1
     return done
 
 
 @kernel
-def _free(
-    body: int,
-    place: Floats,
-    positions: Floats,
-    radii: Floats,
-    half: Floats,
-    levels: Integers,
-    cells: Integers,
-    offsets: Integers,
-    largest: Floats,
-    heads: Integers,
-    following: Integers,
-) -> bool:
+def _free(body: int, place: Floats, spheres: _Spheres, grids: _Grids) -> bool:
     """Whether no sphere that is placed overlaps this one at this place."""
-    for level in range(levels[body] + 1):
-        reach = radii[body] + largest[level]
-        nx, ny, nz = cells[level]
+    positions, radii, half = spheres.positions, spheres.radii, spheres.half
+    for level in range(grids.levels[body] + 1):
+        reach = radii[body] + grids.largest[level]
+        nx, ny, nz = grids.cells[level]
         for x in range(_along(place[0] - reach, half[0], nx), _along(place[0] + reach, half[0], nx) + 1):
             for y in range(_along(place[1] - reach, half[1], ny), _along(place[1] + reach, half[1], ny) + 1):
                 for z in range(_along(place[2] - reach, half[2], nz), _along(place[2] + reach, half[2], nz) + 1):
-                    other = heads[offsets[level] + (x * ny + y) * nz + z]
+                    other = grids.heads[grids.offsets[level] + (x * ny + y) * nz + z]
                     while other >= 0:
                         dx = place[0] - positions[other, 0]
                         dy = place[1] - positions[other, 1]
@@ -121,7 +138,7 @@ def _free(
                         touch = radii[body] + radii[other]
                         if dx * dx + dy * dy + dz * dz < touch * touch:
                             return False
-                        other = following[other]
+                        other = grids.following[other]
     return True
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
@@ -24,8 +25,8 @@ class Scene:
     mesh : the mesh all bodies share; None only for spheres
     bodies : as they are at time 0
     box : closed, centred at the origin
-    hulls : by the size of a body in m, its hull in m, where it is not to be that of the mesh: so that every backend of
-        a comparison gets the very hull that one of them makes of it
+    hulls : by the size of a body in m, its hull in m, where it replaces that of the mesh: in a comparison every backend
+        then gets the hull that one of them has made
     """
 
     shape: Shape
@@ -53,6 +54,19 @@ class Scene:
             return Surface(hull.vertices, hull.faces)
         solid = self.mesh.hull if self.shape == "hull" else self.mesh
         return Surface(solid.vertices * size, solid.faces)
+
+    @property
+    def enclosing_radii(self) -> NDArray[np.float64]:
+        """(n,) m: radii of spheres around the centres that hold the bodies.
+
+        Those of the bounding spheres; a hull that is given in place of the mesh's own may stick out of them.
+        """
+        radii: NDArray[np.float64] = self.bodies.radii.copy()
+        for size, hull in self.hulls.items():
+            reach = float(np.linalg.norm(hull.vertices, axis=1).max())
+            of_size = self.bodies.sizes == size
+            radii[of_size] = np.maximum(radii[of_size], reach)
+        return radii
 
     @property
     def faces(self) -> int:

@@ -56,7 +56,7 @@ def simplify(
         if reached == count + 1:
             found, triangles = drop_face(found, triangles)
         if len(triangles) == count:
-            if after.crowded <= before.crowded and (after.watertight or not before.watertight):
+            if after.nonmanifold <= before.nonmanifold and (after.watertight or not before.watertight):
                 return normalised(found), triangles
             pinched = pinched or (found, triangles)
     if pinched is None:

@@ -25,27 +25,31 @@ class Topology:
     ----------
     edges : of all faces, each counted once
     boundary : edges of one face
-    crowded : edges of three and more faces
+    nonmanifold : edges of three and more faces, where the surface is no manifold
     turned : edges of two faces that run around it in contrary senses, so that one is inside out
     pieces : parts that share no vertex
     """
 
     edges: int
     boundary: int
-    crowded: int
+    nonmanifold: int
     turned: int
     pieces: int
 
     @property
     def watertight(self) -> bool:
         """Whether every edge belongs to exactly two faces."""
-        return self.boundary == 0 and self.crowded == 0
+        return self.boundary == 0 and self.nonmanifold == 0
 
 
 def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
     """Counts over the edges of faces, (f, 3) int array, each of whose vertices is used.
 
     Faces that name a vertex twice have no edges and are passed over.
+
+    >>> tetrahedron = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], np.int32)
+    >>> topology(tetrahedron, 4).watertight, topology(tetrahedron[1:], 4).boundary
+    (True, 3)
     """
     edges, first, uses = _edges(proper(faces))
     forward = np.bincount(edges, weights=first, minlength=len(uses))
@@ -54,7 +58,7 @@ def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
     return Topology(
         edges=len(uses),
         boundary=int((uses == 1).sum()),
-        crowded=int((uses > 2).sum()),
+        nonmanifold=int((uses > 2).sum()),
         turned=int(((uses == 2) & (forward != 1)).sum()),
         pieces=int(connected_components(graph, directed=False, return_labels=False)),
     )

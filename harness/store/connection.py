@@ -1,4 +1,4 @@
-"""Connections to a results file: opened only when it is sound and ours, and every failure told to a person.
+"""Connections to a results file: opened only if it is valid and ours; every failure becomes a sentence for a person.
 
 Files of another program, another schema version, or damaged ones are refused before anything is written: the check runs
 on a connection that cannot write.
@@ -19,13 +19,15 @@ APPLICATION_ID = 0x68726E73  # "hrns", in the file's header
 SCHEMA_VERSION = 3
 BUSY_SECONDS = 10.0
 
-# What SQLite says (Python 3.10 has no error codes), and what a person should hear.
+# Parts of SQLite's messages (Python 3.10 has no error codes), and the sentence for a person.
 _SENTENCES = {
     "file is not a database": "is not a results database; nothing was changed. Give another file with --db",
     "malformed": "is damaged; nothing was changed. Keep a copy (`sqlite3 FILE .recover` can often save its rows) and "
     "sweep into another file with --db",
     "disk is full": "cannot grow: the disk is full. Every finished run is kept; make room, and the same command "
     "does the rest",
+    "disk I/O error": "cannot be written to: its disk is full or gone, or the file may not grow (`ulimit -f`). Every "
+    "finished run is kept; mend that, and the same command does the rest",
     "readonly": "cannot be written to: it, its folder or its disk is read-only. Give another file with --db",
     "locked": f"is locked: another program has kept it from being used for {BUSY_SECONDS:g} s. Close that program, and "
     "the same command goes on from here",
@@ -45,7 +47,7 @@ def open_for_reading(path: Path) -> sqlite3.Connection:
         raise InputError(f"{path}: no such file; `harness sweep` makes it")
     if not path.is_file():
         raise InputError(f"{path}: is no file; give a file with --db")
-    with told(path):
+    with as_input_error(path):
         connection = _connect_read_only(path)
         try:
             if not _is_results(connection, path):
@@ -68,13 +70,13 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
         The file is damaged, another program's, of another schema version, or cannot be written to.
     """
     if os.path.exists(path):
-        with told(path):
+        with as_input_error(path):
             reading = _connect_read_only(path)
             try:
                 _is_results(reading, path)
             finally:
                 reading.close()
-    with told(path):
+    with as_input_error(path):
         connection = _connect(path, "rwc")
         try:
             connection.execute("PRAGMA journal_mode = WAL")
@@ -82,7 +84,7 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
             connection.execute("PRAGMA foreign_keys = ON")
             if _is_empty(connection):
                 _create(connection)
-            # SQLite quietly opens a file it may not write to: find out now, not after the first run
+            # SQLite opens a file that it may not write to without an error: this finds out now, not after the first run
             connection.execute("BEGIN IMMEDIATE")
             connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
             connection.execute("ROLLBACK")
@@ -93,7 +95,7 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
 
 
 @contextmanager
-def told(path: Path) -> Iterator[None]:
+def as_input_error(path: Path) -> Iterator[None]:
     """Turn what SQLite raises about a file into an InputError; errors of the program pass through."""
     try:
         yield
@@ -124,8 +126,13 @@ def _connect_read_only(path: Path) -> sqlite3.Connection:
         # can be read without them
         connection.close()
         log = path.with_name(f"{path.name}-wal")
-        if not any(part in str(error) for part in ("unable to open", "readonly")) or log.exists():
+        if not any(part in str(error) for part in ("unable to open", "readonly")):
             raise
+        if log.exists() and log.stat().st_size > 0:
+            raise InputError(
+                f"{path}: cannot be read where it cannot be written to, for its sweep was killed. Copy it "
+                f"with {log.name} into a folder that can be written to, and read it there"
+            ) from error
         connection = _connect(path, "ro&immutable=1")
     except BaseException:
         connection.close()
@@ -164,7 +171,7 @@ def _is_results(connection: sqlite3.Connection, path: Path) -> bool:
 
 
 def _create(connection: sqlite3.Connection) -> None:
-    # One transaction, header fields included: a file is either empty or whole
+    # One transaction, header fields included, so that a file is either empty or whole
     tables = files("harness.store").joinpath("schema.sql").read_text(encoding="utf-8")
     connection.executescript(
         f"BEGIN IMMEDIATE;\n{tables}\n"

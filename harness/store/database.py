@@ -1,7 +1,7 @@
-"""Writing measurements: the sweeping process, and nobody else, adds to the results file.
+"""Writing measurements: the sweeping process alone adds to the results file.
 
-Every method is one transaction. Measurements are added, never changed or removed; what an experiment lists and what
-became of its claims follow its newest sweep.
+Every method is one transaction. Measurements are added, never changed or removed; the points and the verdicts of an
+experiment are those of its newest sweep.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from types import TracebackType
 from typing import Any
 
 from harness.errors import InputError
-from harness.store.connection import open_for_writing, told
+from harness.store.connection import as_input_error, open_for_writing
 from harness.store.history import History
 from harness.store.lock import SweepLock
 from harness.store.recording import Recording, recorded, write
@@ -36,6 +36,7 @@ class Database:
         self.path = path
         self._connection = connection
         self._lock = lock
+        self._file = os.stat(path)
 
     @classmethod
     def open(cls, path: str | Path, create: bool = True) -> Database:
@@ -101,7 +102,7 @@ class Database:
             )
 
     def finish_sweep(self, sweep: int) -> None:
-        """Note that a sweep came to its end."""
+        """Note that a sweep has finished."""
         with self._transaction() as connection:
             connection.execute("UPDATE sweep SET finished = ? WHERE id = ?", (_now(), sweep))
 
@@ -163,6 +164,7 @@ class Database:
         stderr: str | None,
         metrics: Mapping[str, tuple[float, str]],
         timing_grade: bool,
+        *,
         started: datetime | None = None,
         plan: Mapping[str, Any] | None = None,
         machine: Mapping[str, Any] | None = None,
@@ -180,7 +182,7 @@ class Database:
         started : with its time zone
         plan : the pipeline that the run was made of, which the point has from now on
         machine : facts of where it ran, as in `begin_sweep`; without, the machine of the sweep
-        conditions : what it met there
+        conditions : load, frequency and the like while it ran, by name
 
         Raises
         ------
@@ -215,7 +217,7 @@ class Database:
         metrics: Mapping[str, float],
         machine: Mapping[str, Any] | None = None,
     ) -> None:
-        """Keep the clocks of a run that was done once more; the parameters are those of `add_run`."""
+        """Keep the clocks of a control, a run done once more; the parameters are those of `add_run`."""
         with self._transaction() as connection:
             where = _machine_of(connection, sweep) if machine is None else _machine(connection, machine)
             connection.execute(
@@ -224,7 +226,7 @@ class Database:
             )
 
     def add_verdicts(self, sweep: int, experiment: int, kind: VerdictKind, rows: Sequence[VerdictRow]) -> None:
-        """Keep what became of an experiment's expectations or claims, in order; a later call in a sweep replaces it."""
+        """Keep the verdicts on an experiment's expectations or claims, in order; a later call replaces an earlier."""
         with self._transaction() as connection:
             connection.execute(f"DELETE FROM {kind} WHERE experiment = ? AND sweep = ?", (experiment, sweep))
             connection.executemany(
@@ -239,7 +241,7 @@ class Database:
     def add_comparison(
         self, command: str, experiment: str, backends: tuple[str, str], key: str, document: Mapping[str, Any]
     ) -> None:
-        """Keep what was found of two backends on the poses of an experiment, which need not have been swept."""
+        """Keep the comparison of two backends on the poses of an experiment, which need not have been swept."""
         with self._transaction() as connection:
             connection.execute(
                 "INSERT INTO comparison (experiment, first, second, made, command, key, document) "
@@ -264,14 +266,15 @@ class Database:
             write(connection, run, recording)
 
     def recorded(self, keys: Iterable[str]) -> set[str]:
-        """Those of the points, by their keys, that have a recording."""
-        with told(self.path):
+        """The keys, of those given, whose points have a recording."""
+        with as_input_error(self.path):
             return recorded(self._connection, keys)
 
     @contextmanager
     def _transaction(self) -> Iterator[sqlite3.Connection]:
         connection = self._connection
-        with told(self.path):
+        with as_input_error(self.path):
+            self._require_file()
             connection.execute("BEGIN IMMEDIATE")
             try:
                 yield connection
@@ -280,6 +283,18 @@ class Database:
                 if connection.in_transaction:  # a full disk has ended it already
                     connection.execute("ROLLBACK")
                 raise
+
+    def _require_file(self) -> None:
+        """SQLite goes on writing to a file that has no name any more."""
+        try:
+            if os.path.samestat(os.stat(self.path), self._file):
+                return
+        except OSError:
+            pass
+        raise InputError(
+            f"{self.path}: was removed or replaced while it was written to, with what it held; the same command "
+            "measures anew"
+        )
 
 
 def _machine(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> int:
@@ -305,7 +320,10 @@ def _point(connection: sqlite3.Connection, key: str) -> int:
 
 
 def _show_leaves(connection: sqlite3.Connection) -> None:
-    """Make the view `runs` anew where it lacks a leaf: every run ever made, with a column a leaf. Leaves are words."""
+    """Make the view `runs` anew where it lacks a leaf: every run ever made, with a column a leaf.
+
+    The names of leaves are words, so that they need no quoting.
+    """
     leaves = [
         leaf
         for (leaf,) in connection.execute(
@@ -329,11 +347,11 @@ def _row_id(cursor: sqlite3.Cursor) -> int:
 
 def _json(value: Any) -> str:
     """JSON text as the standard has it; a number that is none is an error of the caller."""
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return str(_text(json.dumps(value, ensure_ascii=False, allow_nan=False)))
 
 
 def _text(text: str | None) -> str | None:
-    """Text that can be stored, whatever bytes a run printed."""
+    """Text that can be stored, whatever bytes a run printed or a file is called by."""
     return None if text is None else text.encode("utf-8", "replace").decode()
 
 

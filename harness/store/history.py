@@ -1,4 +1,4 @@
-"""What was measured already, by any connection: for a sweep that resumes, and for one that only asks."""
+"""What is measured already: for a sweep that resumes, and for one that only says what it would do."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from harness.store.connection import open_for_reading, told
+from harness.store.connection import as_input_error, open_for_reading
 
 
 class History:
@@ -16,8 +16,8 @@ class History:
 
     Parameters
     ----------
-    path : the results file, for what is said of it
-    connection : to it
+    path : the results file, named in errors
+    connection : open on it
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
@@ -32,7 +32,7 @@ class History:
         sweeps : count only what these have measured
         """
         found: dict[str, dict[int, str]] = {key: {} for key in keys}
-        with told(self._path):
+        with as_input_error(self._path):
             for key, repeat, status in self._connection.execute(
                 "SELECT point.key, repeat, status FROM run JOIN point ON point.id = run.point "
                 "WHERE point.key IN (SELECT value FROM json_each(?1)) "
@@ -44,7 +44,7 @@ class History:
 
     def controlled(self, keys: Iterable[str], sweeps: Iterable[int] | None = None) -> set[tuple[str, int]]:
         """The keys and repeats that have a control; of these sweeps, where they are given."""
-        with told(self._path):
+        with as_input_error(self._path):
             rows = self._connection.execute(
                 "SELECT key, repeat FROM control JOIN point ON point.id = control.point "
                 "WHERE key IN (SELECT value FROM json_each(?1)) "
@@ -53,11 +53,11 @@ class History:
             )
             return set(rows)
 
-    def without(self, metrics: Mapping[str, Collection[str]]) -> list[tuple[str, int]]:
-        """The keys and repeats whose newest run ended well without all of the metrics that are asked of its key."""
+    def lacking_metrics(self, metrics: Mapping[str, Collection[str]]) -> list[tuple[str, int]]:
+        """The keys and repeats whose newest run ended well but lacks one of the metrics that are asked of its key."""
         wanted = {key: set(names) for key, names in metrics.items() if names}
         found: dict[tuple[str, int], set[str]] = {}
-        with told(self._path):
+        with as_input_error(self._path):
             for key, repeat, name in self._connection.execute(
                 "SELECT key, repeat, name FROM current_run JOIN point ON point.id = current_run.point "
                 "LEFT JOIN metric ON metric.run = current_run.id "
@@ -67,9 +67,9 @@ class History:
                 found.setdefault((key, repeat), set()).add(name)
         return [(key, repeat) for (key, repeat), names in found.items() if wanted[key] - names]
 
-    def broken_off(self, command: str) -> list[int]:
-        """The newest sweeps, as far as all of them had this command line and did not come to their end."""
-        with told(self._path):
+    def unfinished_sweeps(self, command: str) -> list[int]:
+        """The newest sweeps, back to the first that finished or had another command line than this."""
+        with as_input_error(self._path):
             rows = self._connection.execute(
                 "SELECT id FROM sweep WHERE id > "
                 "(SELECT coalesce(max(id), 0) FROM sweep WHERE finished IS NOT NULL OR command <> ?)",
@@ -79,7 +79,7 @@ class History:
 
     def compared(self) -> set[str]:
         """The keys of all comparisons of backends."""
-        with told(self._path):
+        with as_input_error(self._path):
             return {key for (key,) in self._connection.execute("SELECT DISTINCT key FROM comparison")}
 
     def durations(self) -> dict[str, float]:
@@ -88,7 +88,7 @@ class History:
         The parameters find what an earlier version of the program has measured under another key.
         """
         found: dict[str, float] = {}
-        with told(self._path):
+        with as_input_error(self._path):
             for key, parameters, seconds in self._connection.execute(
                 "SELECT key, parameters, avg(json_extract(conditions, '$.seconds')) FROM run "
                 "JOIN point ON point.id = run.point GROUP BY point.id "
@@ -114,12 +114,12 @@ def history_of(path: str | Path) -> Iterator[History]:
 
 @contextmanager
 def reading(path: str | Path) -> Iterator[sqlite3.Connection]:
-    """A connection that sees one moment of the results; errors as of `history_of`."""
+    """A connection that sees the results as they are at one moment; errors as of `history_of`."""
     path = Path(path)
     connection = open_for_reading(path)
     try:
-        with told(path):
-            connection.execute("BEGIN")  # one moment for all that is read
+        with as_input_error(path):
+            connection.execute("BEGIN")  # so that all that is read is of one moment
             yield connection
     finally:
         connection.close()

@@ -33,7 +33,7 @@ class SweepLock:
 
     def release(self) -> None:
         """Give the lock back and remove its file."""
-        with suppress(OSError):  # a file left behind locks nobody out
+        with suppress(OSError):  # a file that is left behind locks out no other sweep
             self._path.unlink()
         os.close(self._handle)
 
@@ -53,7 +53,7 @@ class SweepLock:
                 os.ftruncate(handle, 0)
                 os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
                 return handle
-            os.close(handle)  # its holder removed it between our two steps
+            os.close(handle)  # its holder removed it after it was opened here, and before it was locked
 
     def _is_still_there(self, handle: int) -> bool:
         try:

@@ -1,7 +1,7 @@
 """Recorded runs: what a replay shows, as arrays, and how the results file keeps it.
 
-A body flies straight from the begin of one leg to that of its next, and turns about a fixed axis: so the legs, the
-first orientations and the spins say exactly where everything is at any time.
+A body flies straight from the beginning of one leg to that of the next, and turns about a fixed axis: the legs, the
+first orientations and the spins give every pose at any time exactly.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Surface(NamedTuple):
 
     Parameters
     ----------
-    digest : by which two are the same
+    digest : equal for equal meshes
     vertices, faces : (v, 3) float array and (f, 3) int32 array
     """
 
@@ -39,7 +39,7 @@ class Surface(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """One run to look at.
+    """What a replay shows of one run.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Recording:
     half_box : (3,) m
     sizes : (n,) m, diameters of bounding spheres
     quaternions, spins : (n, 4) and (n, 3), rad/s; a body is turned by exp(spin t) quaternion
-    surface : what all bodies look like, but for their size; None for spheres
+    surface : the mesh that all bodies share, scaled by their sizes; None for spheres
     leg_times, leg_bodies : (m,) s and body numbers, in the order of time; the first n are the bodies at time 0
     leg_positions, leg_velocities : (m, 3) m and m/s
     hit_times, hit_bodies, hit_walls : (k,) s, (k, 2) body numbers, the second -1 at a wall, and (k,) numbers of walls,
@@ -77,7 +77,7 @@ class Recording:
 
 
 def write(connection: sqlite3.Connection, run: int, recording: Recording) -> None:
-    """Keep the recording of a run, inside a transaction of the caller's."""
+    """Keep the recording of a run, inside the caller's transaction."""
     facts = {
         "shape": recording.shape,
         "duration": recording.duration,
@@ -120,7 +120,7 @@ def _hits(recording: Recording) -> Iterator[tuple[float, str, int, int | None, s
 
 
 def recorded(connection: sqlite3.Connection, keys: Iterable[str]) -> set[str]:
-    """Those of the points, by their keys, that have a recording."""
+    """The keys, of those given, whose points have a recording."""
     return {
         key
         for (key,) in connection.execute(
@@ -131,7 +131,7 @@ def recorded(connection: sqlite3.Connection, keys: Iterable[str]) -> set[str]:
     }
 
 
-class Recorded(NamedTuple):
+class PointRecording(NamedTuple):
     """A recording, and the point it is of: its key, its parameters and the counters of its run."""
 
     point: str
@@ -140,7 +140,7 @@ class Recorded(NamedTuple):
     recording: Recording
 
 
-def recording_of(path: str | Path, experiment: str) -> Recorded | None:
+def recording_of(path: str | Path, experiment: str) -> PointRecording | None:
     """The newest recording of a point that an experiment lists now; None where nothing was recorded.
 
     Raises
@@ -163,7 +163,7 @@ def recording_of(path: str | Path, experiment: str) -> Recorded | None:
         counters = dict(
             connection.execute("SELECT name, value FROM metric WHERE run = ? AND unit = '1' ORDER BY rowid", (run,))
         )
-        return Recorded(
+        return PointRecording(
             key, json.loads(parameters), counters, _read(connection, run, json.loads(facts), bodies, digest)
         )
 

@@ -23,7 +23,7 @@ class PointRow:
 
 @dataclass(frozen=True)
 class VerdictRow:
-    """What became of one row of `expect` or `claims`."""
+    """The verdict on one row of `expect` or `claims`."""
 
     criterion: Mapping[str, Any]
     verdict: str
@@ -65,7 +65,7 @@ class ExperimentRecord:
 class RunRecord:
     """One run, as a point of one experiment. A metric that was measured and is not a number is NaN here.
 
-    `machine` is the fingerprint of where it ran; `conditions` are what it met there.
+    `machine` is the fingerprint of where it ran; `conditions` are load, frequency and the like while it ran.
     """
 
     experiment: str
@@ -83,7 +83,7 @@ class RunRecord:
 
 @dataclass(frozen=True)
 class ControlRecord:
-    """The clocks of a run that was done once more, beside the run of the same point and repeat."""
+    """The clocks of a control: the run of a point and repeat, done once more."""
 
     point: str
     repeat: int
@@ -93,7 +93,7 @@ class ControlRecord:
 
 @dataclass(frozen=True)
 class ComparisonRecord:
-    """What was found last of two backends on the poses of an experiment."""
+    """The newest comparison of two backends on the poses of an experiment."""
 
     experiment: str
     backends: tuple[str, str]

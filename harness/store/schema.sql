@@ -59,7 +59,7 @@ CREATE TABLE run (
     UNIQUE (point, repeat, sweep)
 );
 
--- The same run once more, beside the run of that point and repeat: how far two equal things come apart.
+-- The run of a point and repeat once more: how far two equal runs differ is the noise of the machine.
 CREATE TABLE control (
     point   INTEGER NOT NULL REFERENCES point,
     repeat  INTEGER NOT NULL CHECK (repeat >= 0),

@@ -1,4 +1,4 @@
-"""The results as they stood when a sweep had ended: what two sweeps are compared by."""
+"""The results as they were when a sweep had ended: the difference of two sweeps is that of their snapshots."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.store.connection import told
+from harness.store.connection import as_input_error
 from harness.store.history import reading
 from harness.store.records import RunRecord, VerdictKind
 
 
 @dataclass(frozen=True)
 class VerdictRecord:
-    """What a sweep found of one row of an experiment's expectations or claims."""
+    """The verdict of a sweep on one row of an experiment's expectations or claims."""
 
     experiment: str
     kind: VerdictKind
@@ -26,14 +26,14 @@ class VerdictRecord:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The results as they stood when a sweep had ended.
+    """The results as they were when a sweep had ended.
 
     Parameters
     ----------
     runs : the newest of every point and repeat that was measured by then. Of points with the same parameters, which
         another version of the program has measured under another key, the one measured last
-    controls : by point and repeat, the clocks of the second arm
-    verdicts : of every experiment, by its newest sweep of then that judged it
+    controls : by point and repeat, the clocks of the control
+    verdicts : of every experiment, those of the newest sweep until then that judged it
     """
 
     runs: tuple[RunRecord, ...]
@@ -48,14 +48,14 @@ def measuring_sweeps(path: str | Path) -> list[int]:
 
 
 def snapshot(path: str | Path, sweep: int) -> Snapshot:
-    """The results as they stood when a sweep had ended.
+    """The results as they were when a sweep had ended.
 
     Raises
     ------
     InputError
         The file is missing, empty, damaged, another program's, or of another schema version.
     """
-    with reading(path) as connection, told(Path(path)):
+    with reading(path) as connection, as_input_error(Path(path)):
         rows = connection.execute(
             "SELECT run.id, key, parameters, repeat, status, reason, sweep, timing_grade, fingerprint, "
             "(SELECT min(name) FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "

@@ -1,6 +1,6 @@
 """Reading results: the file turned into a table of runs and into records. Nothing else reads the file.
 
-Readers cannot write and never wait for a sweep: each sees the last finished run of its moment.
+Readers cannot write and never wait for a sweep: each sees every run that had finished when it began to read.
 """
 
 from __future__ import annotations
@@ -27,6 +27,9 @@ from harness.store.records import (
     VerdictRow,
 )
 
+# What is said of a row of `expect` or `claims` that the sweep did not come to judge.
+NOT_JUDGED = "not judged yet: the sweep has not come to its end"
+
 _FIXED = ("experiment", "point", "repeat", "status", "reason", "sweep", "timing_grade", "machine")
 
 
@@ -36,7 +39,7 @@ def runs(path: str | Path, experiments: Iterable[str] | None = None) -> pd.DataF
     Parameters
     ----------
     path : the results file
-    experiments : names of those to read; all without
+    experiments : names of those to read; None for all
 
     Returns
     -------
@@ -122,7 +125,7 @@ def controls(path: str | Path, experiments: Iterable[str] | None = None) -> list
 def experiments(path: str | Path) -> list[ExperimentRecord]:
     """Every experiment as it was last swept, by name.
 
-    A row of its `expect` or `claims` that the sweep did not come to judge is undecided, and says so.
+    A row of its `expect` or `claims` that the sweep did not judge, since it was stopped, is undecided and says so.
     """
     with reading(path) as connection:
         known = {sweep.id: sweep for sweep in _sweeps(connection)}
@@ -154,7 +157,7 @@ def sweeps(path: str | Path) -> list[SweepRecord]:
 
 
 def conditions(path: str | Path, experiment: str) -> list[dict[str, float]]:
-    """What each newest run of an experiment met on its machine, by name."""
+    """The conditions of each newest run of an experiment: load, frequency and the like by name, while it ran."""
     with reading(path) as connection:
         rows = connection.execute(
             "SELECT conditions FROM current_run JOIN experiment_point ON experiment_point.point = current_run.point "
@@ -213,7 +216,7 @@ def _verdicts(
     )
     if judged:
         return judged
-    return tuple(VerdictRow(row, "undecided", "not judged yet: the sweep has not come to its end") for row in criteria)
+    return tuple(VerdictRow(row, "undecided", NOT_JUDGED) for row in criteria)
 
 
 def _sweeps(connection: sqlite3.Connection) -> list[SweepRecord]:

@@ -1,4 +1,4 @@
-"""Backends that are extras: sound where they are installed, and named with the command that brings them where not."""
+"""Backends that are extras: right where they are installed, and named with the command that brings them where not."""
 
 import json
 import os
@@ -136,6 +136,7 @@ def test_trimesh_has_no_spheres_and_says_what_to_exclude(tmp_path, capsys):
     assert "backend trimesh has no shape sphere, only hull and mesh" in said.out + said.err
 
 
+@pytest.mark.slow
 def test_a_backend_of_another_package_is_installed_and_used(tmp_path):
     site, results = tmp_path / "site", tmp_path / "results.db"
     install(EXAMPLE, site)

@@ -38,6 +38,7 @@ def test_a_gap_beyond_the_tolerance_decides(name, shape, size):
     assert two_at(-band, shape, name, size=size) == [[0, 1]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 @pytest.mark.parametrize("side", [10.0, 4.0])
 def test_fcl_and_pybullet_see_the_same_pairs(shape, side):

@@ -77,12 +77,14 @@ def scenes(draw):
     return positions, radii, half
 
 
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None)
 @given(scenes())
 def test_every_method_finds_exactly_what_the_definition_says(scene):
     assert_exact(*scene)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1.0, 3.0, 30.0, 1000.0]), st.sampled_from([0.02, 0.2, 0.6]))
 def test_crowds_of_any_mix_are_found_exactly_frame_after_frame(seed, ratio, packing):
@@ -213,6 +215,7 @@ def last_touching(x, reach):
     return y
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("size", [0.1, 0.3, 0.7])
 def test_a_pair_that_spans_a_whole_cell_to_the_last_bit_is_not_lost_to_rounding(axis, size):
@@ -229,6 +232,7 @@ def test_a_pair_that_spans_a_whole_cell_to_the_last_bit_is_not_lost_to_rounding(
     assert_exact(positions, radii, half)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("ratio", [1.0, 2.9, 10.0, 1000.0])
 def test_touching_pairs_of_any_ratio_are_found_wherever_cells_end(axis, ratio):

@@ -35,6 +35,7 @@ def address(tmp_path_factory):
         server.wait()
 
 
+@pytest.mark.slow
 def test_settings_are_run_at_once_shown_and_listed_with_their_costs(visit, address):
     seen = visit(address)
     page = seen.page
@@ -54,6 +55,7 @@ def test_settings_are_run_at_once_shown_and_listed_with_their_costs(visit, addre
     assert all(url.startswith((address, "data:")) for url in seen.requests)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_run_is_said_in_a_sentence_and_the_scene_stays(visit, address):
     page = visit(address).page
     page.wait_for_selector("#costs tbody tr")

@@ -1,4 +1,4 @@
-"""Every page of a report in a real browser: whole, without a network, readable at any width and by anybody."""
+"""Every page of a report in a real browser: whole, without a network, readable at any width, and accessible."""
 
 import pytest
 
@@ -25,6 +25,7 @@ def violations(page, **options):
     return [(entry["id"], [node["html"][:160] for node in entry["nodes"]][:4]) for entry in found]
 
 
+@pytest.mark.slow
 def test_every_page_is_whole_and_accessible_wide_and_narrow_light_and_dark(visit, report):
     paths = sorted(report.rglob("*.html"))
     assert {"index.html", "replay.html"} <= {path.name for path in paths}
@@ -47,6 +48,7 @@ def test_every_page_is_whole_and_accessible_wide_and_narrow_light_and_dark(visit
     assert not wrong, "\n".join(map(str, wrong))
 
 
+@pytest.mark.slow
 def test_the_replay_is_a_click_away_from_its_page_and_back(visit, report):
     seen = visit((report / "pages" / "single" / "index.html").as_uri())
     seen.page.get_by_role("link", name="Play this run").click()

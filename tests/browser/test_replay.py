@@ -60,6 +60,7 @@ def position(recording, body, time):
     return recording.leg_positions[leg] + flown, np.linalg.norm(recording.leg_velocities[leg])
 
 
+@pytest.mark.slow
 def test_every_hit_stands_in_the_list_with_its_time(replay, cubes):
     page = replay()
     found = {}
@@ -76,6 +77,7 @@ def test_every_hit_stands_in_the_list_with_its_time(replay, cubes):
     assert [found[hit] for hit in range(len(expected))] == expected
 
 
+@pytest.mark.slow
 def test_buttons_jump_from_hit_to_hit_and_name_the_bodies(replay, cubes):
     page = replay()
     times = np.unique(cubes.hit_times)
@@ -95,6 +97,7 @@ def test_buttons_jump_from_hit_to_hit_and_name_the_bodies(replay, cubes):
     assert abs(time_of(page) - times[2] + cubes.dt) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_row_of_the_list_jumps_to_its_hit(replay, spheres):
     page = replay("spheres")
     page.locator("#hits button").nth(5).click()
@@ -104,6 +107,7 @@ def test_a_row_of_the_list_jumps_to_its_hit(replay, spheres):
     assert abs(time_of(page) - spheres.hit_times[6]) < 1e-3
 
 
+@pytest.mark.slow
 def test_keys_play_step_and_jump(replay, cubes):
     page = replay()
     page.focus("#stage")
@@ -124,6 +128,7 @@ def test_keys_play_step_and_jump(replay, cubes):
     assert abs(time_of(page) - cubes.duration) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_chosen_body_tells_its_speed_and_hits(replay, cubes):
     page = replay()
     body = int(np.bincount(cubes.hit_bodies[:, 0]).argmax())
@@ -144,6 +149,7 @@ def test_a_chosen_body_tells_its_speed_and_hits(replay, cubes):
     assert page.locator("#hits li").first.get_attribute("aria-setsize") == str(len(mine))
 
 
+@pytest.mark.slow
 def test_a_click_on_a_body_chooses_it_and_the_camera_turns_by_drag_wheel_and_keys(replay):
     page = replay("spheres")
     frame = page.locator("#stage").bounding_box()
@@ -170,6 +176,7 @@ def test_a_click_on_a_body_chooses_it_and_the_camera_turns_by_drag_wheel_and_key
     assert len(set(pictures)) == len(pictures)
 
 
+@pytest.mark.slow
 def test_bodies_are_drawn_and_those_that_hit_are_marked(replay, cubes):
     page = replay()
     first = page.locator("#stage").screenshot()
@@ -190,6 +197,7 @@ def share(picture, test):
     return test(red, green, blue).mean()
 
 
+@pytest.mark.slow
 def test_it_plays_by_itself_only_where_motion_is_welcome(visit, pages):
     address = (pages / "spheres.html").as_uri()
     still, moving = visit(address).page, visit(address, reduced_motion="no-preference").page
@@ -197,6 +205,7 @@ def test_it_plays_by_itself_only_where_motion_is_welcome(visit, pages):
     assert time_of(still) == 0
 
 
+@pytest.mark.slow
 def test_without_webgl_there_are_a_sentence_a_still_and_the_list(visit, pages, cubes):
     page = visit((pages / "cubes.html").as_uri(), script=NO_WEBGL).page
     assert page.get_by_text("This browser draws no WebGL2").is_visible()
@@ -205,6 +214,7 @@ def test_without_webgl_there_are_a_sentence_a_still_and_the_list(visit, pages, c
     assert abs(time_of(page) - cubes.hit_times[0]) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cubes", "spheres"])
 def test_the_viewer_puts_bodies_where_the_run_had_them(replay, name, request):
     recording = request.getfixturevalue(name)

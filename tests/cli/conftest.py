@@ -1,6 +1,6 @@
 """Servers that outlive a command, so that the many commands of these tests need not start them anew.
 
-That a command starts its servers and ends them is seen where the real command is (`tests/runner`).
+That a command starts its servers and ends them is tested with the real command (`tests/runner`).
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import pytest
 from harness.runner.servers import Servers
 
 
-class Lent:
-    """Servers of somebody else: leaving them ends nothing."""
+class SharedServers:
+    """Servers that others use too: leaving the context ends none of them."""
 
     def __init__(self, servers: Servers) -> None:
         self._servers = servers
         self.run, self.interrupt = servers.run, servers.interrupt
 
-    def __enter__(self) -> Lent:
+    def __enter__(self) -> SharedServers:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -34,7 +34,7 @@ def servers():
 
 
 @pytest.fixture(autouse=True)
-def lent(servers, monkeypatch):
+def share_servers(servers, monkeypatch):
     """Every sweep and every trace in this process gets the same servers."""
     for module in ("executor", "sweep"):
-        monkeypatch.setattr(f"harness.runner.{module}.Servers", lambda: Lent(servers))
+        monkeypatch.setattr(f"harness.runner.{module}.Servers", lambda: SharedServers(servers))

@@ -42,6 +42,7 @@ def speeds(document):
     return [velocity[0] for velocity in document["final"]["velocity"]]
 
 
+@pytest.mark.slow
 def test_head_on_four_apart_meets_at_one_and_a_half_and_swaps(trace):
     document = trace([body(-2, 1), body(2, -1)], 3.0)
     assert pairs(document) == [{"time": 1.5, "kind": "pair", "bodies": [0, 1]}]
@@ -88,6 +89,7 @@ def test_a_corner_sends_a_ball_back_the_way_it_came(trace):
     assert document["final"]["position"][0] == pytest.approx([0, 0, 0], abs=8e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("digits", "hits"), [(0, 3), (1, 31), (2, 314), (3, 3141), (4, 31415), (5, 314159)])
 def test_galperins_billiard_counts_the_digits_of_pi(trace, digits, hits):
     # the wall is x-; by the end the heavy ball has come back, and not reached the wall behind it

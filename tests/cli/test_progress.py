@@ -1,4 +1,4 @@
-"""How a sweep goes, told on standard error: plainly without a terminal, and never while something is timed."""
+"""The progress of a sweep on standard error: plain lines without a terminal, and never while something is timed."""
 
 import io
 
@@ -8,7 +8,7 @@ from rich.console import Console
 from harness.cli.main import main
 from harness.cli.progress import Progress, name_of
 from harness.experiment.load import load_text
-from harness.runner.estimate import Estimate, spoken
+from harness.runner.estimate import Estimate, duration_text
 from harness.runner.schedule import Job
 from harness.runner.task import Report
 
@@ -22,7 +22,7 @@ measure: {repeats: 1}
 
 
 @pytest.fixture
-def told(tmp_path, monkeypatch, capsys):
+def swept(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "p.yaml").write_text(EXPERIMENT)
 
@@ -33,8 +33,9 @@ def told(tmp_path, monkeypatch, capsys):
     return sweep
 
 
-def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(told):
-    output = told()
+@pytest.mark.slow
+def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(swept):
+    output = swept()
     first, failure = output.err.splitlines()
     assert first == "2 runs to do"
     assert failure.startswith("p (count 500, repeat 0): rejected: ")
@@ -44,11 +45,11 @@ def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(to
     assert table[1].split()[:4] == ["p", "2", "1", "rejected"]
 
 
-def test_quiet_says_only_what_goes_wrong_and_verbose_a_line_a_run(told):
-    quiet = told("--quiet")
+def test_quiet_says_only_what_goes_wrong_and_verbose_a_line_a_run(swept):
+    quiet = swept("--quiet")
     assert [line.split(":")[0] for line in quiet.err.splitlines()] == ["p (count 500, repeat 0)"]
     assert "experiment  " not in quiet.out
-    verbose = told("--verbose")
+    verbose = swept("--verbose")
     assert any(line.startswith("p (count 2, repeat 0): ok, ") for line in verbose.err.splitlines())
 
 
@@ -82,4 +83,4 @@ def test_on_a_terminal_sweep_and_run_are_drawn_between_runs_only(monkeypatch, tm
     ("seconds", "words"), [(0.04, "0.0 s"), (2.6, "3 s"), (99, "99 s"), (700, "12 min"), (12000, "3 h 20 min")]
 )
 def test_times_are_said_as_people_say_them(seconds, words):
-    assert spoken(seconds) == words
+    assert duration_text(seconds) == words

@@ -38,6 +38,7 @@ def exported(capsys):
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_a_sweep_keeps_every_run_and_the_next_does_only_what_is_missing(small, capsys):
     assert main(["sweep", "small.yaml"]) == 0
     assert "16 runs done (16 ok), 0 kept" in capsys.readouterr().out
@@ -72,6 +73,7 @@ def test_a_sweep_keeps_every_run_and_the_next_does_only_what_is_missing(small, c
     }
 
 
+@pytest.mark.slow
 def test_a_failed_run_is_a_row_with_its_reason_and_the_exit_code_says_so(small, capsys):
     assert main(["sweep", "small.yaml", "--set", "count=500", "--set", "box=[4, 4, 4]"]) == 1
     runs = exported(capsys)["runs"]
@@ -129,6 +131,7 @@ def test_plan_says_what_is_left_out_and_warns_of_approximations(small, capsys):
     assert "spin" in stages["orientations"]["why"]
 
 
+@pytest.mark.slow
 def test_python_gives_the_same_counts_as_the_commands(small):
     experiment = harness.load("small.yaml", count=8, repeats=1)
     table = harness.run(experiment)

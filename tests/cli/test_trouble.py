@@ -45,6 +45,7 @@ def swept(path):
     return path
 
 
+@pytest.mark.slow
 def test_a_full_disk_keeps_every_finished_run_and_the_next_sweep_does_the_rest(trouble, capsys, monkeypatch):
     connect = store._connect
 

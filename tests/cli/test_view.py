@@ -40,6 +40,7 @@ def array(document, name):
     return np.frombuffer(base64.b64decode(document["data"]), f"<{kind}", length, offset)
 
 
+@pytest.mark.slow
 def test_the_page_holds_the_hits_where_the_closed_form_has_them(file, capsys):
     assert main(["view", str(file)]) == 0
     path = file.parent / "results" / "replays" / "two.html"
@@ -51,6 +52,7 @@ def test_the_page_holds_the_hits_where_the_closed_form_has_them(file, capsys):
     assert array(document, "leg_velocities")[3:6].tolist() == [-1, 0, 0]
 
 
+@pytest.mark.slow
 def test_a_run_that_cannot_be_exits_1_and_a_file_that_cannot_be_written_2(file, capsys):
     assert main(["view", str(file), "--set", "count=300", "--set", "speed=1"]) == 1
     assert "the run failed (rejected)" in capsys.readouterr().err

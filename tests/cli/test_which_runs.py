@@ -34,6 +34,7 @@ def rows():
         return connection.execute("SELECT point, repeat, status, sweep FROM run ORDER BY id").fetchall()
 
 
+@pytest.mark.slow
 def test_only_runs_points_with_these_values_and_the_rest_later(which, capsys):
     assert "4 runs done" in sweep(capsys, "--only", "count=8")
     assert "2 runs done (2 ok), 2 kept" in sweep(
@@ -68,6 +69,7 @@ def test_retry_does_the_failed_runs_again_and_keeps_the_first_rows(which, capsys
     assert len(rows()) == 12
 
 
+@pytest.mark.slow
 def test_fresh_does_everything_again_and_goes_on_where_it_was_broken_off(which, capsys, monkeypatch):
     sweep(capsys)
     assert "12 runs done (12 ok), 0 kept" in sweep(capsys, "--fresh")
@@ -95,7 +97,7 @@ def interrupted_after(runs):
 
 
 def test_a_dry_run_says_what_would_be_done_and_how_long_and_does_nothing(which, capsys):
-    assert "12 runs to do, 0 kept from before: no run like these was ever done" in sweep(capsys, "--dry-run")
+    assert "12 runs to do, 0 kept from before: no such run was done before" in sweep(capsys, "--dry-run")
     assert not (which / "results").exists()
     sweep(capsys, "--only", "count=8")
     before = rows()
@@ -109,6 +111,7 @@ def test_a_dry_run_says_what_would_be_done_and_how_long_and_does_nothing(which, 
     assert rows() == before
 
 
+@pytest.mark.slow
 def test_a_control_is_run_where_methods_are_compared_and_is_no_row(which, capsys):
     assert "30 runs done (30 ok), 0 kept from before\n5 of them done twice" in sweep(capsys, "--set", "repeats=5")
     assert len(rows()) == 30

@@ -60,6 +60,32 @@ DEFECTS = {
                 os.kill(os.getpid(), signal.SIGSEGV)
             return super().pairs(positions, quaternions)
     """,
+    "forks": """
+        def pairs(self, positions, quaternions):
+            started = os.fork()
+            if started == 0:
+                os.setsid()
+                time.sleep(600)
+                os._exit(0)
+            open(os.environ["HARNESS_TEST_NOTE"], "w").write(str(started))
+            return super().pairs(positions, quaternions)
+    """,
+    "loads-once": """
+        def load(self, scene):
+            if os.path.exists(os.environ["HARNESS_TEST_NOTE"]):
+                raise RuntimeError("loaded before")
+            open(os.environ["HARNESS_TEST_NOTE"], "w").close()
+            super().load(scene)
+        def pairs(self, positions, quaternions):
+            os.kill(os.getpid(), signal.SIGSEGV)
+    """,
+    "prints": """
+        def pairs(self, positions, quaternions):
+            print("garbage", flush=True)
+            os.write(1, b"garbage")
+            os.write(2, b"garbage")
+            return super().pairs(positions, quaternions)
+    """,
     "hangs": """
         def pairs(self, positions, quaternions):
             if abs(positions[0, 0]) > 0.9:
@@ -100,3 +126,13 @@ def defective(tmp_path, monkeypatch):
         return name
 
     return install
+
+
+def two_spheres(path, duration):
+    """An experiment of two spheres that overlap at rest; its path."""
+    path.write_text(
+        "title: Two\n"
+        "scene: {shape: sphere, box: [4, 4, 4], bodies: [{position: [0, 0, 0]}, {position: [0.5, 0, 0]}]}\n"
+        f"motion: {{duration: {duration}, dt: 1/30, response: none}}\n"
+    )
+    return str(path)

@@ -3,22 +3,23 @@
 import numpy as np
 import pytest
 
-from harness.compare.hard import hard_poses
+from harness.compare.hard_poses import hard_poses
 from harness.compare.judge import judge
 from harness.compare.poses import flown
 from tests.conftest import cube_mesh, random_scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 def test_first_contacts_are_as_far_apart_as_they_say(shape):
     seen = set()
-    for setting in hard_poses(shape, cube_mesh()):
-        sizes = setting.scene.bodies.sizes
-        for pose in setting.poses(setting.scene)[:: 1 if shape == "sphere" else 7]:
+    for pose_set in hard_poses(shape, cube_mesh()):
+        sizes = pose_set.scene.bodies.sizes
+        for pose in pose_set.poses(pose_set.scene)[:: 1 if shape == "sphere" else 7]:
             if ", gap " not in pose.name:
                 continue
             feature, gap = pose.name.split(", gap ")
-            truth = judge(setting.scene, 0, 1, pose.positions, pose.quaternions)
+            truth = judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions)
             rounding = 4e-16 * (np.abs(pose.positions).max() + sizes.max()) * 4
             made = float(gap) * sizes.min()
             slack = rounding + 1e-9 * abs(made)
@@ -28,6 +29,7 @@ def test_first_contacts_are_as_far_apart_as_they_say(shape):
     assert len(seen) == (1 if shape == "sphere" else 9)
 
 
+@pytest.mark.slow
 def test_the_same_poses_are_made_every_time():
     once, again = (list(hard_poses("hull", cube_mesh())) for _ in range(2))
     for one, other in zip(once, again, strict=True):
@@ -37,11 +39,12 @@ def test_the_same_poses_are_made_every_time():
             assert np.array_equal(pose.quaternions, same.quaternions)
 
 
+@pytest.mark.slow
 def test_some_small_bodies_lie_inside_large_ones():
     inside = [
-        judge(setting.scene, 0, 1, pose.positions, pose.quaternions).contained
-        for setting in hard_poses("mesh", cube_mesh())
-        for pose in setting.poses(setting.scene)
+        judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions).contained
+        for pose_set in hard_poses("mesh", cube_mesh())
+        for pose in pose_set.poses(pose_set.scene)
         if pose.name.startswith("centres")
     ]
     assert sum(inside) >= 3

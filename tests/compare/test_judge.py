@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.compare.judge import judge
+from harness.compare.hard_poses import hard_poses
+from harness.compare.judge import judge, touches
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
@@ -76,3 +77,11 @@ def test_convex_surfaces_cross_where_their_hulls_touch():
                 assert mesh.gap == pytest.approx(hull.gap, rel=1e-9)
             verdicts.append(hull.touching)
     assert 5 < sum(verdicts) < 40
+
+
+@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+def test_the_short_verdict_is_that_of_the_judge(shape):
+    for pose_set in list(hard_poses(shape, cube_mesh(), 31))[::3]:
+        for pose in pose_set.poses(pose_set.scene):
+            truth = judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions)
+            assert touches(pose_set.scene, 0, 1, pose.positions, pose.quaternions) == truth.touching

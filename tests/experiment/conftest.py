@@ -10,7 +10,7 @@ from harness.experiment.experiment import Experiment
 from harness.experiment.load import load_text
 
 Read = Callable[..., Experiment]
-Complain = Callable[..., list[str]]
+ProblemsIn = Callable[..., list[str]]
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def read(folder: Path) -> Read:
 
 
 @pytest.fixture
-def complain(folder: Path) -> Complain:
+def problems_in(folder: Path) -> ProblemsIn:
     """Every problem of a text, as it is said."""
 
     def problems(text: str | bytes, **set: object) -> list[str]:

@@ -1,6 +1,7 @@
 """Any experiment that is right loads, again and again the same; any that is wrong is refused in sentences."""
 
 import jsonschema
+import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -55,6 +56,7 @@ def files(draw: st.DrawFn) -> dict[str, object]:
     return file
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(files())
 def test_a_right_experiment_loads_and_its_points_load_again(file: dict[str, object]) -> None:
@@ -89,6 +91,7 @@ FILE_OF_JUNK = st.dictionaries(st.sampled_from([*KEYS, "titel"]), JUNK) | st.fix
 )
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(FILE_OF_JUNK, st.dictionaries(st.sampled_from([*LEAVES, *MeasureSpec.model_fields, "x"]), JUNK, max_size=2))
 def test_junk_in_the_form_of_an_experiment_is_refused_in_sentences(file: object, set: dict[str, object]) -> None:

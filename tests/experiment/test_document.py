@@ -139,6 +139,7 @@ def test_what_is_not_yaml_is_said_in_one_sentence(text: str, said: str) -> None:
     assert said in problem or said.startswith("f.yaml:1:4")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "junk",
     [

@@ -8,7 +8,7 @@ import pytest
 from harness.experiment.experiment import Experiment
 
 Read = Callable[..., Experiment]
-Complain = Callable[..., list[str]]
+ProblemsIn = Callable[..., list[str]]
 
 BASE = "title: t\nscene: {shape: sphere, count: 2, box: [9, 9, 9]}\n"
 
@@ -93,47 +93,49 @@ def test_boxes_can_be_swept_and_excluded(read: Read) -> None:
         ("include: [{shape: hull}]", "exp.yaml:3:19: shape hull needs a mesh"),
     ],
 )
-def test_a_wrong_sweep_says_where(text: str, problem: str, complain: Complain) -> None:
-    (message,) = complain(BASE + text)
+def test_a_wrong_sweep_says_where(text: str, problem: str, problems_in: ProblemsIn) -> None:
+    (message,) = problems_in(BASE + text)
     assert problem in message
 
 
-def test_impossible_combinations_name_the_row_that_leaves_them_out_once_a_kind(read: Read, complain: Complain) -> None:
+def test_impossible_combinations_name_the_row_that_leaves_them_out_once_a_kind(
+    read: Read, problems_in: ProblemsIn
+) -> None:
     text = BASE + "sweep:\n  count: [1, 2, 3]\n  backend: [fcl, pybullet]\n  algorithm: [brute-force, grid, native]\n"
     rows = ["{backend: pybullet, algorithm: [brute-force, grid]}", "{backend: fcl, algorithm: native}"]
-    messages = complain(text)
+    messages = problems_in(text)
     assert messages[0].startswith("exp.yaml:6:15: backend pybullet has no algorithm brute-force or grid, only native")
     assert [message.split("`")[1] for message in messages] == [f"exclude: - {row}" for row in rows]
     mended = read(text + "exclude:\n" + "".join(f"  - {row}\n" for row in rows))
     assert len(mended.points) == 9
 
 
-def test_restitution_cannot_be_swept_over_responses_without_it(complain: Complain) -> None:
-    (message,) = complain(BASE + "motion: {restitution: 0.5}\nsweep: {response: [elastic, reflect]}")
+def test_restitution_cannot_be_swept_over_responses_without_it(problems_in: ProblemsIn) -> None:
+    (message,) = problems_in(BASE + "motion: {restitution: 0.5}\nsweep: {response: [elastic, reflect]}")
     assert message.endswith("leave it out with `exclude: - {response: reflect, restitution: 0.5}`")
 
 
-def test_too_many_runs_are_refused_before_any_is_made(read: Read, complain: Complain) -> None:
+def test_too_many_runs_are_refused_before_any_is_made(read: Read, problems_in: ProblemsIn) -> None:
     many = f"[{', '.join(map(str, range(1000)))}]"
     start = time.perf_counter()
-    (message,) = complain(BASE + f"sweep: {{count: {many}, seed: {many}, size: {many.replace('[0', '[1.5')}}}")
+    (message,) = problems_in(BASE + f"sweep: {{count: {many}, seed: {many}, size: {many.replace('[0', '[1.5')}}}")
     assert time.perf_counter() - start < 2
     assert message.startswith("exp.yaml:3:1: 5000000000 runs (1000 count x 1000 seed x 1000 size, 5 repeats) are more")
     text = BASE + f"measure: {{repeats: 11}}\nsweep: {{count: {many}}}"
-    assert "11000 runs" in complain(text)[0]
+    assert "11000 runs" in problems_in(text)[0]
     assert len(read(text, max_runs=11_000).points) == 1000
 
 
-def test_runs_are_counted_after_what_is_excluded(read: Read, complain: Complain) -> None:
+def test_runs_are_counted_after_what_is_excluded(read: Read, problems_in: ProblemsIn) -> None:
     many = f"[{', '.join(map(str, range(1, 200)))}]"
     text = BASE + f"measure: {{repeats: 1}}\nsweep: {{count: {many}, seed: {many}}}\n"
-    assert "39601 runs" in complain(text)[0]
+    assert "39601 runs" in problems_in(text)[0]
     assert len(read(text + f"exclude: [{{seed: {many[:-6]}]}}]").points) == 199
 
 
-def test_a_file_cannot_ask_for_more_points_than_can_be_held(complain: Complain) -> None:
+def test_a_file_cannot_ask_for_more_points_than_can_be_held(problems_in: ProblemsIn) -> None:
     many = f"[{', '.join(map(str, range(1000)))}]"
     text = BASE + f"measure: {{max_runs: 1000000, repeats: 1}}\nsweep: {{count: {many}, seed: {many}}}\n"
-    assert complain(text) == ["exp.yaml:4:1: 1000000 points are too many; there can be 100000"]
+    assert problems_in(text) == ["exp.yaml:4:1: 1000000 points are too many; there can be 100000"]
     rows = "exclude:\n" + "- {seed: 5}\n" * 100
-    assert "1000000 combinations are too many to hold against 100 rows of exclude" in complain(text + rows)[0]
+    assert "1000000 combinations are too many to hold against 100 rows of exclude" in problems_in(text + rows)[0]

@@ -71,6 +71,7 @@ def test_validate_says_everything_about_every_file(capsys: pytest.CaptureFixture
     ]
 
 
+@pytest.mark.slow
 def test_a_mesh_that_cannot_be_opened_is_an_error_where_it_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     Path("m.yaml").write_text("title: t\nscene:\n  count: 2\n  box_ratio: 1/9\nsweep:\n  mesh: [cube.ply, duck.obj]\n")
     assert main(["validate", "m.yaml"]) == 2
@@ -84,7 +85,7 @@ def test_two_files_of_one_name_are_refused(capsys: pytest.CaptureFixture[str]) -
         Path(folder).mkdir()
         Path(folder, "same.yaml").write_text(GOOD)
     assert main(["validate", "a", "b"]) == 2
-    assert 'b/same.yaml: this is called "same" as a/same.yaml is' in capsys.readouterr().err
+    assert 'b/same.yaml:1:1: this is called "same" as a/same.yaml is' in capsys.readouterr().err
 
 
 def test_a_wrong_set_is_said_once_for_all_files(capsys: pytest.CaptureFixture[str]) -> None:

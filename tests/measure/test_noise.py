@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.measure.noise import noise_floor, told_apart
+from harness.measure.noise import distinguishable, noise_floor
 from harness.measure.statistics import paired_ratio, summary
 
 NOISES = {
@@ -14,6 +14,7 @@ NOISES = {
 MEDIANS = {"normal": 10.0, "skewed": 1.0, "spiky": np.log(2.0) ** 2}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", NOISES)
 @pytest.mark.parametrize("repeats", [5, 6, 8, 11, 20])
 def test_an_interval_holds_the_median_as_often_as_it_says(noise, repeats):
@@ -34,7 +35,7 @@ def winner(times, floor):
     """Whether the arm with the lowest median is told apart from every other one, as the pages rank."""
     order = np.argsort(np.median(times, axis=0))
     best, *others = (times[:, arm] for arm in order)
-    return all(told_apart(paired_ratio(other, best), floor) for other in others)
+    return all(distinguishable(paired_ratio(other, best), floor) for other in others)
 
 
 @pytest.mark.parametrize("arms", [2, 3, 6])

@@ -10,7 +10,7 @@ import fcl
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from harness.narrowphase.fcl_objects import FclObjects
+from harness.backends.fcl_objects import FclObjects
 
 PAIR, WALL = 0, 1
 

@@ -3,28 +3,19 @@
 import numpy as np
 import pytest
 
-from harness.backends.fcl import Fcl
 from harness.motion.course import folded_course
-from harness.motion.kinematics import Flight
-from harness.motion.plan import make_plan
-from harness.motion.predicted import fly_predicted
-from harness.motion.stepped import fly_stepped
+from harness.motion.kinematics import Trajectory
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies, random_scene
+from tests.methods import flights
+from tests.methods.flights import frames_of
 
 DURATION, FRAMES = 3.0, 90
 
 
 def fly(scene, algorithm, response, recorded=True):
-    if algorithm == "predictive":
-        plan = make_plan(scene, backend="", algorithm=algorithm, response=response)
-        return fly_predicted(scene, plan, duration=DURATION, response=response, traced=True, recorded=recorded)
-    plan = make_plan(scene, backend="fcl", algorithm="brute-force", response=response)
-    backend = Fcl("brute-force")
-    backend.load(scene)
-    dt = DURATION / FRAMES
-    return fly_stepped(scene, plan, backend, frames=FRAMES, dt=dt, response=response, traced=True, recorded=recorded)
+    return flights.fly(scene, algorithm, frames_of(FRAMES, DURATION / FRAMES, response), recorded=recorded)
 
 
 def positions_at(course, time, count):
@@ -79,10 +70,10 @@ def test_folded_legs_agree_with_the_closed_form_also_from_beyond_a_wall():
     )
     box = Box(np.array([2.0, 1.5, 3.0]))
     course = folded_course(bodies, box, 20.0)
-    flight = Flight(bodies, box, folded=True, turning=False)
+    trajectory = Trajectory(bodies, box, folded=True, turning=False)
     for time in np.linspace(0.01, 20, 57):
-        flight.move_to(time)
-        assert np.abs(positions_at(course, time, 3) - flight.positions).max() < 1e-12
+        trajectory.move_to(time)
+        assert np.abs(positions_at(course, time, 3) - trajectory.positions).max() < 1e-12
 
 
 def test_a_scene_without_bodies_has_a_course_without_legs():

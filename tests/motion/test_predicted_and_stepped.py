@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 
-from harness.backends.fcl import Fcl
-from harness.motion.plan import make_plan
-from harness.motion.predicted import fly_predicted
-from harness.motion.stepped import fly_stepped
+from harness.motion.law import MotionLaw
 from harness.scene.box import Box
 from harness.scene.launch import directions, place
 from harness.scene.scene import Scene
 from tests.conftest import make_bodies
+from tests.methods.flights import fly, frames_of
 
 DURATION = 1.5
 
@@ -24,21 +22,18 @@ def gas():
 
 
 def predicted(scene, response):
-    plan = make_plan(scene, backend="fcl", algorithm="predictive", response=response)
-    return fly_predicted(scene, plan, duration=DURATION, response=response, traced=True)
+    return fly(scene, "predictive", MotionLaw(DURATION, DURATION, response))
 
 
 def stepped(scene, response, dt):
-    plan = make_plan(scene, backend="fcl", algorithm="grid", response=response)
-    backend = Fcl("grid")
-    backend.load(scene)
-    return fly_stepped(scene, plan, backend, frames=round(DURATION / dt), dt=dt, response=response, traced=True)
+    return fly(scene, "grid", frames_of(round(DURATION / dt), dt, response))
 
 
 def sequence(trace):
     return [(*bodies, wall) for bodies, wall in zip(trace.bodies.tolist(), trace.walls.tolist(), strict=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("response", ["reflect", "elastic"])
 def test_short_frames_see_the_events_in_the_order_of_the_schedule(gas, response):
     exact, frames = predicted(gas, response).trace, stepped(gas, response, 1e-4).trace

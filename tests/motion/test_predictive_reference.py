@@ -44,6 +44,7 @@ def until_too_close_to_call(reference, tolerance):
     return reference.events[: close[0]] if len(close) else reference.events
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(scenes(), st.sampled_from(["cells", "lists"]))
 def test_the_scheduler_meets_the_events_of_the_plain_loop(scene, search):
@@ -79,7 +80,7 @@ def test_a_scene_without_events_has_none():
 
 
 @pytest.mark.parametrize("n", [0, 1])
-def test_nobody_and_a_single_sphere_fly_too(n):
+def test_no_body_and_a_single_sphere_are_runs_too(n):
     simulation = Simulation(np.zeros((n, 3)), np.ones((n, 3)), np.full(n, 0.5), np.ones(n), [1.5, 1.5, 1.5])
     simulation.advance(10.0)
     assert simulation.counters["pair_hits"] == 0

@@ -1,4 +1,4 @@
-"""Overlaps, walls, ties, bursts, sampling, recording: the rules that keep a run sound."""
+"""Overlaps, walls, ties, bursts, sampling, recording: the rules that keep a run right."""
 
 import numpy as np
 import pytest
@@ -22,6 +22,7 @@ def state(simulation):
     return np.concatenate([simulation.positions, simulation.velocities])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("response", ["elastic", "reflect", "none"])
 @pytest.mark.parametrize("packing", [0.2, 0.5])
 def test_sampling_does_not_disturb_a_bit(response, packing):
@@ -110,7 +111,7 @@ def test_touching_spheres_that_slide_along_each_other_do_not_stall():
 
 @pytest.mark.parametrize("speed", [1.0, 1e6, 1e12])
 @pytest.mark.parametrize("response", ["elastic", "reflect", "none"])
-def test_nobody_leaves_the_box_whatever_the_speed(speed, response):
+def test_no_centre_leaves_the_box_whatever_the_speed(speed, response):
     rng = np.random.default_rng(4)
     positions = rng.uniform(-2, 2, (20, 3))
     velocities = rng.normal(size=(20, 3))
@@ -232,6 +233,7 @@ def test_the_order_in_memory_does_not_show():
     assert np.allclose(simulation.positions, folded, atol=1e-11)
 
 
+@pytest.mark.slow
 def test_onsets_are_those_of_the_folded_paths():
     """Two ghosts on closed-form paths: the distance falls below the sum of radii exactly at the recorded times."""
     simulation = gas(count=12, packing=0.3, response="none", record=True)
@@ -263,6 +265,7 @@ def test_more_spheres_in_one_place_than_a_list_holds():
     assert abs(simulation.virial_residual) <= 1e-12
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**31), st.sampled_from([2.0, 4.0, 12.0, 100.0, 1000.0]), st.sampled_from(["elastic", "reflect"]))
 def test_mixed_sizes_never_come_to_overlap(seed, ratio, response):

@@ -34,6 +34,7 @@ def pressure_between_walls(count, reach):
     return carnahan_starling(eta) - 4 * wall_tension(eta) / reach
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("packing", [0.1, 0.3, 0.45])
 def test_a_thousand_spheres_press_and_collide_as_theory_says(packing):
     simulation = fluid(1000, packing, melt=100)

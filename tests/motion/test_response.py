@@ -1,20 +1,20 @@
-"""Answers to hits against the laws they must obey."""
+"""CollisionResponse to hits against the laws they must obey."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.motion.response import Answers
+from harness.motion.response import CollisionResponse
 
 vectors = st.tuples(*[st.floats(-3, 3)] * 3)
 
 
 def answer(positions, velocities, *, masses=(1.0, 1.0), response="elastic", restitution=1.0, pairs=((0, 1),)):
     positions, velocities = np.array(positions, float), np.array(velocities, float)
-    answers = Answers(np.array(masses, float), response, restitution)
-    hits = answers.pairs(np.array(pairs), positions, velocities)
-    return velocities, hits, answers
+    response = CollisionResponse(np.array(masses, float), response, restitution)
+    hits = response.pairs(np.array(pairs), positions, velocities)
+    return velocities, hits, response
 
 
 def test_equal_masses_head_on_swap_their_velocities():
@@ -37,11 +37,11 @@ def test_a_heavy_body_hands_on_what_its_mass_ratio_says(ratio):
 def test_elastic_keeps_momentum_and_turns_the_approach_by_the_restitution(gap, u, v, mass, restitution):
     gap = np.array(gap)
     before = np.array([u, v])
-    after, hits, answers = answer([[0, 0, 0], gap], before, masses=(1.0, mass), restitution=restitution)
+    after, hits, response = answer([[0, 0, 0], gap], before, masses=(1.0, mass), restitution=restitution)
     approach = np.dot(before[1] - before[0], gap)
     assert hits[0] == (approach < 0)
     assert np.allclose(after[0] + mass * after[1], before[0] + mass * before[1], atol=1e-12)
-    assert answers.momentum_added < 1e-13
+    assert response.momentum_added < 1e-13
     if hits[0] and np.dot(gap, gap) > 1e-12:
         assert np.dot(after[1] - after[0], gap) == pytest.approx(-restitution * approach, abs=1e-10)
 
@@ -56,10 +56,10 @@ def test_reflect_keeps_the_speed_of_each_body(gap, u, v):
 
 
 def test_overlapping_bodies_that_separate_are_left_alone():
-    after, hits, answers = answer([[0, 0, 0], [0.1, 0, 0]], [[-1, 0, 0], [1, 0, 0]])
+    after, hits, response = answer([[0, 0, 0], [0.1, 0, 0]], [[-1, 0, 0], [1, 0, 0]])
     assert after.tolist() == [[-1, 0, 0], [1, 0, 0]]
     assert not hits[0]
-    assert not answers.changed.any()
+    assert not response.changed.any()
 
 
 def test_concentric_bodies_have_no_normal_and_are_left_alone():
@@ -79,15 +79,15 @@ def test_a_wall_flips_only_what_approaches_it():
     velocities = np.array([[-1.0, 2.0, 3.0], [1.0, -2.0, -3.0]])
     touching = np.zeros((2, 6), bool)
     touching[:, 0] = touching[:, 3] = True  # x- and y+
-    answers = Answers(np.ones(2), "reflect", 1.0)
-    hits = answers.walls(touching, velocities)
+    response = CollisionResponse(np.ones(2), "reflect", 1.0)
+    hits = response.walls(touching, velocities)
     assert velocities.tolist() == [[1, -2, 3], [1, -2, -3]]
     assert np.argwhere(hits).tolist() == [[0, 0], [0, 3]]
-    assert answers.changed.tolist() == [True, False]
+    assert response.changed.tolist() == [True, False]
 
 
 def test_a_corner_flips_all_three_components():
     velocities = np.array([[1.0, 1.0, 1.0]])
-    hits = Answers(np.ones(1), "reflect", 1.0).walls(np.ones((1, 6), bool), velocities)
+    hits = CollisionResponse(np.ones(1), "reflect", 1.0).walls(np.ones((1, 6), bool), velocities)
     assert velocities.tolist() == [[-1, -1, -1]]
     assert hits.tolist() == [[False, True, False, True, False, True]]

@@ -5,7 +5,7 @@ from functools import cache
 import fcl
 import numpy as np
 
-from harness.narrowphase.advancement import Motion, orientation, place
+from harness.narrowphase.free_flight import Motion, orientation, place
 from harness.narrowphase.mesh_advancement import mesh_shape
 from tests.conftest import cube_mesh
 from tests.narrowphase.meshes import mesh_named, turns

@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.narrowphase.advancement import orientation, place
-from harness.narrowphase.contact_intervals import PARTED, end_of_mesh_contact, hull_contacts, mesh_contacts
-from harness.narrowphase.gjk import MARGIN, NO_SEEDS, OVERLAP, SEPARATE, hull_distance, relative_pose
+from harness.narrowphase.contact_end import end_of_mesh_contact
+from harness.narrowphase.contact_intervals import hull_contacts, mesh_contacts
+from harness.narrowphase.free_flight import orientation, place
+from harness.narrowphase.gjk import COLD_START, MARGIN, hull_distance, relative_pose
 from harness.narrowphase.vectors import minus
+from harness.narrowphase.verdicts import PairVerdict, SearchVerdict
 from tests.narrowphase.flights import Truth, body, encounter, shape_named
 from tests.narrowphase.meshes import MESHES, mesh_named
 
@@ -24,6 +26,7 @@ def of_hulls(name, a, b, end, begin=0.0, tolerance=1e-9):
     return hull_contacts(hull, hull, a, b, begin, end, tolerance)
 
 
+@pytest.mark.slow
 def test_cubes_that_fly_through_each_other_touch_from_face_to_face_until_they_are_apart():
     a, b = body(), body((5, 0.1, 0.07), (-2.0, 0, 0))
     expected = [[(5 - WIDTH) / 2, (5 + WIDTH) / 2]]
@@ -62,6 +65,7 @@ def test_a_spinning_bar_of_two_cubes_width_touches_a_wall_cube_twice_a_turn():
         assert of("cube", a, b, 4 * quarter).intervals == pytest.approx(np.array(expected), abs=1e-8)
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES), st.sampled_from([0.0, 3.0, 10.0]))
 def test_surfaces_touch_at_every_instant_of_a_contact_and_at_none_between(seed, name, spin):
@@ -92,9 +96,10 @@ def test_hulls_overlap_at_every_instant_of_a_contact_and_at_none_between(seed, n
             pose = relative_pose(
                 orientation(a, time), a.size, orientation(b, time), b.size, minus(place(b, time), place(a, time))
             )
-            found = hull_distance(hull, hull, pose, NO_SEEDS, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf)
+            found = hull_distance(hull, hull, pose, COLD_START, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf)
             inside = np.searchsorted(ends, time) % 2 == 1
-            assert found.verdict == (OVERLAP if inside else SEPARATE) or (inside and found.lower <= 1.25e-7)
+            expected = PairVerdict.TOUCHING if inside else PairVerdict.SEPARATE
+            assert found.verdict == expected or (inside and found.lower <= 1.25e-7)
 
 
 @settings(max_examples=15)
@@ -113,7 +118,7 @@ def test_the_end_of_a_contact_is_where_the_gap_is_the_tolerance():
     a, b = body(), body((5, 0.1, 0.07), (-2.0, 0, 0))
     shape = shape_named("cube")
     for tolerance in (1e-2, 1e-4, 1e-6):
-        parting = end_of_mesh_contact(shape, shape, a, b, 2.5, 9.0, tolerance)
-        gap = 2 * parting.time - 5 - WIDTH
-        assert parting.verdict == PARTED
+        ended = end_of_mesh_contact(shape, shape, a, b, 2.5, 9.0, tolerance)
+        gap = 2 * ended.time - 5 - WIDTH
+        assert ended.verdict == SearchVerdict.FOUND
         assert 1.12 * tolerance <= gap <= 1.26 * tolerance

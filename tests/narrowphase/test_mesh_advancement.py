@@ -7,18 +7,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from harness.narrowphase.advancement import IMPACT, NEVER, attitude, place, time_of_impact
-from harness.narrowphase.gjk import NO_SEEDS
-from harness.narrowphase.mesh_advancement import NO_START, MeshShape, time_of_mesh_impact
+from harness.narrowphase.advancement import time_of_impact
+from harness.narrowphase.free_flight import attitude, place
+from harness.narrowphase.gjk import COLD_START
+from harness.narrowphase.mesh_advancement import MESH_COLD_START, MeshShape, time_of_mesh_impact
 from harness.narrowphase.support import support_map
 from harness.narrowphase.triangle_tree import triangle_tree
+from harness.narrowphase.verdicts import SearchVerdict
 from tests.narrowphase.flights import STRAIGHT, Truth, body, encounter, shape_named
 from tests.narrowphase.meshes import MESHES, mesh_named, turns
 
 WIDTH = 1 / np.sqrt(3)
 
 
-def impact(a, b, name="cube", begin=0.0, end=np.inf, tolerance=1e-9, start=NO_START):
+def impact(a, b, name="cube", begin=0.0, end=np.inf, tolerance=1e-9, start=MESH_COLD_START):
     shape = shape_named(name) if isinstance(name, str) else name
     return time_of_mesh_impact(shape, shape, a, b, begin, float(end), tolerance, start)
 
@@ -29,7 +31,7 @@ def test_cubes_that_meet_face_to_face_edge_to_face_and_corner_to_face_do_so_on_t
     on_corner = (np.cos(tilt), 0, np.sin(tilt) / np.sqrt(2), -np.sin(tilt) / np.sqrt(2))
     for quaternion, reach in ((STRAIGHT, WIDTH / 2), (slanted, WIDTH / np.sqrt(2)), (on_corner, 0.5)):
         found = impact(body(), body((5, 0.1, 0.07), (-2.0, 0, 0), quaternion))
-        assert found.verdict == IMPACT
+        assert found.verdict == SearchVerdict.FOUND
         assert found.time == pytest.approx((5 - WIDTH / 2 - reach) / 2, rel=1e-9)
         assert found.axis == pytest.approx((-1, 0, 0), abs=1e-6)
 
@@ -69,7 +71,7 @@ def test_icospheres_converge_to_the_sphere_with_the_square_of_their_edges():
         for q, p in zip(turns(np.random.default_rng(0), 20), turns(np.random.default_rng(1), 20), strict=True):
             a, b_ = body(quaternion=q, spin=(0.5, 1, 2)), body(offset, velocity, quaternion=p, spin=(1, -2, 0))
             found.append(impact(a, b_, shape, tolerance=1e-10).time - exact)
-            hulls = time_of_impact(shape.hull, shape.hull, a, b_, 0.0, np.inf, 1e-10, NO_SEEDS)
+            hulls = time_of_impact(shape.hull, shape.hull, a, b_, 0.0, np.inf, 1e-10, COLD_START)
             assert found[-1] == pytest.approx(hulls.time - exact, abs=1e-8)  # a convex surface is its hull
         assert min(found) > -1e-9  # inscribed, so they meet later
         errors.append(np.mean(found))
@@ -78,16 +80,17 @@ def test_icospheres_converge_to_the_sphere_with_the_square_of_their_edges():
     assert (abs(orders - 2) < 0.35).all()
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES), st.sampled_from([0.0, 3.0, 15.0]))
 def test_nothing_touches_before_an_impact_and_at_it_the_gap_is_within_tolerance(seed, name, spin):
     a, b = encounter(seed, spin)
     found = impact(a, b, name, end=1.0, tolerance=1e-7)
     truth = Truth(mesh_named(name), a, b)
-    assert found.verdict in (IMPACT, NEVER)
+    assert found.verdict in (SearchVerdict.FOUND, SearchVerdict.NEVER)
     until = min(found.time, 1.0)
     assert not any(truth.touch(t) for t in np.linspace(0, until, 300, endpoint=False) if t < until)
-    if found.verdict == IMPACT:
+    if found.verdict == SearchVerdict.FOUND:
         assert not any(truth.touch(t) for t in until - np.geomspace(1e-9, 1e-3, 20) if t >= 0)
         if found.time > 0:
             assert truth.distance(found.time) <= 1.01e-7
@@ -100,7 +103,7 @@ def test_nothing_touches_before_an_impact_and_at_it_the_gap_is_within_tolerance(
 def test_surfaces_meet_no_earlier_than_their_hulls(seed, name):
     a, b = encounter(seed, 3.0, apart=(1.0, 1.5))
     hull = shape_named(name).hull
-    hulls, surfaces = time_of_impact(hull, hull, a, b, 0.0, 3.0, 1e-9, NO_SEEDS), impact(a, b, name, end=3.0)
+    hulls, surfaces = time_of_impact(hull, hull, a, b, 0.0, 3.0, 1e-9, COLD_START), impact(a, b, name, end=3.0)
     assert surfaces.time >= hulls.time - 1e-8
     assert surfaces.verdict <= hulls.verdict
 
@@ -118,24 +121,24 @@ def test_a_cube_inside_a_hollow_one_strikes_the_wall_while_the_centres_part(rate
     after = np.argmax(gap(times) <= 0)
     expected = brentq(gap, times[after - 1], times[after], xtol=1e-14)
     found = impact(a, b, tolerance=1e-10)
-    assert found.verdict == IMPACT
+    assert found.verdict == SearchVerdict.FOUND
     assert found.time == pytest.approx(expected, abs=1e-8)
     assert found.time <= expected
-    assert impact(a, b, end=0.99 * expected).verdict == NEVER  # inside, and not touching
+    assert impact(a, b, end=0.99 * expected).verdict == SearchVerdict.NEVER  # inside, and not touching
 
 
 def test_surfaces_that_cross_at_the_beginning_touch_then_and_those_that_fly_apart_never_do():
-    assert impact(body(), body((0.3, 0.1, 0.2)), begin=2.0)[:2] == (IMPACT, 2.0)
-    assert impact(body(), body((5, 0, 0), (1.0, 0, 0)))[:2] == (NEVER, np.inf)
-    assert impact(body(), body((5, 0.1, 0), (-1.0, 0, 0)), end=2.0)[:2] == (NEVER, 2.0)
-    assert impact(body(), body((5, 2.0, 0), (-1.0, 0, 0), spin=(1, 2, 3)))[:2] == (NEVER, np.inf)
+    assert impact(body(), body((0.3, 0.1, 0.2)), begin=2.0)[:2] == (SearchVerdict.FOUND, 2.0)
+    assert impact(body(), body((5, 0, 0), (1.0, 0, 0)))[:2] == (SearchVerdict.NEVER, np.inf)
+    assert impact(body(), body((5, 0.1, 0), (-1.0, 0, 0)), end=2.0)[:2] == (SearchVerdict.NEVER, 2.0)
+    assert impact(body(), body((5, 2.0, 0), (-1.0, 0, 0), spin=(1, 2, 3)))[:2] == (SearchVerdict.NEVER, np.inf)
 
 
 def test_a_search_from_where_another_ended_finds_the_same():
     for seed in range(20):
         a, b = encounter(seed, 3.0, apart=(1.0, 1.5))
         first = impact(a, b, "pumpkin-1753.ply", end=3.0, tolerance=1e-8)
-        again = impact(a, b, "pumpkin-1753.ply", end=3.0, tolerance=1e-8, start=first.start)
+        again = impact(a, b, "pumpkin-1753.ply", end=3.0, tolerance=1e-8, start=first.warm_start)
         assert again.verdict == first.verdict
         assert again.time == pytest.approx(first.time, abs=1e-6)
 
@@ -146,5 +149,5 @@ def test_late_times_lose_no_more_digits_than_the_clock_has():
     early = impact(a, b, tolerance=1e-9)
     earlier = [m._replace(position=place(m, -late), quaternion=attitude(m, -late)) for m in (a, b)]
     found = impact(*earlier, begin=late, tolerance=1e-9)
-    assert found.verdict == IMPACT
+    assert found.verdict == SearchVerdict.FOUND
     assert found.time - late == pytest.approx(early.time, abs=1e-8)

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.narrowphase.advancement import orientation, place
-from harness.narrowphase.crossing import DEPTH
+from harness.narrowphase.free_flight import orientation, place
 from harness.narrowphase.gjk import relative_pose
 from harness.narrowphase.surface_distance import surface_distance
+from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, Trees
 from harness.narrowphase.triangle_distance import triangle_distance
 from harness.narrowphase.vectors import minus
 from tests.narrowphase.flights import Truth, encounter, shape_named
@@ -60,6 +60,7 @@ def as_tuples(triangle):
     return tuple(tuple(map(float, corner)) for corner in triangle)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(
     st.integers(0, 10**6),
@@ -91,6 +92,7 @@ def test_the_distance_of_triangles_is_the_least_over_their_features(seed, form):
         assert apart == pytest.approx(found.lower, abs=1e-14)
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(st.integers(0, 10**6), st.sampled_from(["cube", *MESHES[:3]]))
 def test_the_distance_of_surfaces_is_that_of_fcl_up_to_the_limit(seed, name):
@@ -104,9 +106,9 @@ def test_the_distance_of_surfaces_is_that_of_fcl_up_to_the_limit(seed, name):
     else:
         truth = Truth(mesh_named(name), a, b)
         expected = 0.0 if truth.touch(0.0) else truth.distance(0.0)
-    assert surface_distance(tree, tree, pose, 10.0, 1e-13, stack)[0] == pytest.approx(expected, abs=1e-9)
+    assert surface_distance(Trees(tree, tree), pose, 10.0, 1e-13, stack).gap == pytest.approx(expected, abs=1e-9)
     if expected > 0:
-        assert surface_distance(tree, tree, pose, 0.99 * expected, 1e-13, stack) == (np.inf, -1, -1)
+        assert surface_distance(Trees(tree, tree), pose, 0.99 * expected, 1e-13, stack) == (np.inf, NO_NODES)
 
 
 def placed(tree, motion):

@@ -3,18 +3,21 @@
 import pandas as pd
 import pytest
 
-from harness.report.crossings import crossing_sentences
-from harness.report.series import Arrangement, Cell, Series
+from harness.report.point import MeasuredPoint
+from harness.report.sentences.crossings import crossing_sentences
+from harness.report.series import Arrangement, Series
 from harness.store.records import PointRow
 
 
 def series(label, exponent, factor, box=1.0):
-    cells = []
+    points = []
     for count in (10, 20, 40, 80):
         costs = [factor * count**exponent] * 5
         runs = pd.DataFrame({"repeat": range(5), "status": "ok", "machine": "m", "run_seconds": costs})
-        cells.append(Cell(PointRow(f"{label}{count}", {"count": count, "algorithm": label, "box_ratio": box}), runs))
-    return Series(label, 0, "", tuple(cells), (10, 20, 40, 80))
+        points.append(
+            MeasuredPoint(PointRow(f"{label}{count}", {"count": count, "algorithm": label, "box_ratio": box}), runs)
+        )
+    return Series(label, 0, "", tuple(points), (10, 20, 40, 80))
 
 
 def sentences(*lines, metric="run_seconds"):

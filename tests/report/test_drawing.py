@@ -6,8 +6,9 @@ from itertools import pairwise
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.report import palette
-from harness.report.drawing import Line, Panel, Slope, draw_exponents, draw_panels
+from harness.report.drawing import palette
+from harness.report.drawing.exponents import Slope, draw_exponents
+from harness.report.drawing.panels import Line, Panel, draw_panels
 
 
 def panel(lines, **changes):

@@ -3,16 +3,17 @@
 import pandas as pd
 
 from harness.report.plan import stages
-from harness.report.series import Arrangement, Cell, Series
+from harness.report.point import MeasuredPoint
+from harness.report.series import Arrangement, Series
 from harness.store.records import PointRow
 
 
 def arrangement(*plans):
-    cells = tuple(
-        Cell(PointRow(str(place), {}, {"stages": plan}), pd.DataFrame({"status": []}))
+    points = tuple(
+        MeasuredPoint(PointRow(str(place), {}, {"stages": plan}), pd.DataFrame({"status": []}))
         for place, plan in enumerate(plans)
     )
-    return Arrangement("count", (1, 2), (Series("fcl", 0, "", cells, (1, 2)),), None, ())
+    return Arrangement("count", (1, 2), (Series("fcl", 0, "", points, (1, 2)),), None, ())
 
 
 def stage(kept, why):

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from harness.report.contradictions import contradictions
+from harness.report.arrange import arrange
 from harness.report.published import Row, distinct, published_rows, recovered, repetitions
-from harness.report.series import arrange
+from harness.report.sentences.contradictions import contradictions
 from harness.store.tables import experiments, runs
 
 
@@ -72,7 +72,7 @@ def test_the_same_scene_printed_twice_is_no_contradiction(database):
 
 def test_every_row_meets_our_point_with_its_leaves(database):
     found = rows_of(database, "homework/number-of-objects")
-    assert [entry.cell.point.parameters["count"] for entry in found] == [entry.leaves["count"] for entry in found]
+    assert [entry.point.parameters["count"] for entry in found] == [entry.leaves["count"] for entry in found]
     assert found[0].ours("pair_tests") == 600 * 5 * 4 / 2
 
 
@@ -80,12 +80,12 @@ def test_a_fraction_as_text_is_its_number(database):
     record = next(record for record in experiments(database) if record.name == "homework/object-size")
     block = {"rows": [{"box_ratio": "1/4", "pair_tests": 7}]}
     (found,) = published_rows("x", block, arrange(record, runs(database, [record.name])))
-    assert found.cell.point.parameters["box_ratio"] == 0.25
+    assert found.point.parameters["box_ratio"] == 0.25
 
 
 def test_a_row_without_our_point_is_kept(database):
     record = next(record for record in experiments(database) if record.name == "homework/object-size")
     block = {"rows": [{"box_ratio": 0.5, "pair_tests": 7}]}
     (found,) = published_rows("x", block, arrange(record, runs(database, [record.name])))
-    assert found.cell is None
+    assert found.point is None
     assert distinct([found, found]) == [found]

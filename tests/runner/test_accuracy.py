@@ -32,6 +32,7 @@ def metrics(text=GAS, **leaves):
     return execute(point, None).metrics
 
 
+@pytest.mark.slow
 def test_frames_see_hits_late_by_up_to_a_frame_and_by_half_of_one_in_the_middle():
     for dt in (1 / 30, 1 / 300):
         found = metrics(dt=dt)
@@ -42,6 +43,7 @@ def test_frames_see_hits_late_by_up_to_a_frame_and_by_half_of_one_in_the_middle(
     assert found["missed_hits"] == found["missed_hits_expected"] == 0
 
 
+@pytest.mark.slow
 def test_predictive_sees_every_hit_when_it_happens():
     found = metrics(algorithm="predictive")
     assert found["missed_hits"] == found["extra_hits"] == 0
@@ -50,6 +52,7 @@ def test_predictive_sees_every_hit_when_it_happens():
     assert "missed_hits_expected" not in found
 
 
+@pytest.mark.slow
 def test_a_fast_body_tunnels_as_often_as_its_contacts_are_shorter_than_a_frame():
     """One body flies through another at rest; each contact of length l is missed with probability 1 - l / dt."""
     crossing = """
@@ -70,6 +73,7 @@ measure: {repeats: 1, reference: {}}
     assert found["extra_hits"] == 0
 
 
+@pytest.mark.slow
 def test_in_free_flight_a_finer_step_follows_the_reference_longer():
     free = GAS.replace("none", "elastic")
     coarse, fine = metrics(free, dt=1 / 30), metrics(free, dt=1 / 30000, duration=1)
@@ -88,10 +92,10 @@ def test_a_reference_is_made_once_for_all_points_of_a_sweep(monkeypatch):
 
     def counting(*arguments):
         made.append(arguments)
-        return contacts_of(*arguments)
+        return scene_contacts(*arguments)
 
-    contacts_of = accuracy.contacts_of
-    monkeypatch.setattr(accuracy, "contacts_of", counting)
+    scene_contacts = accuracy.scene_contacts
+    monkeypatch.setattr(accuracy, "scene_contacts", counting)
     for algorithm in ("grid", "tree"):
         for dt in (0.1, 0.01):
             metrics(algorithm=algorithm, dt=dt)
@@ -115,7 +119,7 @@ def test_a_damaged_or_unfinished_reference_is_made_again(cache):
     assert not list(cache.folder().glob("*.part"))
 
 
-def test_a_point_with_a_reference_is_another_than_without_and_nobody_else_measures_errors():
+def test_a_point_with_a_reference_is_another_than_without_and_no_other_measures_errors():
     plain = GAS.replace(", reference: {algorithm: predictive, tolerance: 1.0e-10}", "")
     assert point_key(points()[0], None) != point_key(points(plain)[0], None)
     assert "missed_hits" not in metrics(plain)

@@ -67,13 +67,14 @@ def small(tmp_path, monkeypatch):
 
 def counted(database):
     """Everything exact that a sweep has measured, by experiment, point and repeat."""
-    exact = [name for name, metric in METRICS.items() if metric.kind in ("counter", "error")]
+    exact = [name for name, metric in METRICS.items() if not metric.noisy]
     return {
         (run.experiment, run.point, run.repeat): {name: run.metrics[name] for name in exact if name in run.metrics}
         for run in tables.run_records(database)
     }
 
 
+@pytest.mark.slow
 def test_a_cluster_counts_what_one_machine_counts_to_the_bit_even_if_a_worker_dies(small, plugin, capfd):
     """One of the two workers is killed by a run that it has in hand; its runs are done by the other."""
     plugin(
@@ -105,6 +106,7 @@ def test_a_cluster_counts_what_one_machine_counts_to_the_bit_even_if_a_worker_di
     assert {facts[machine]["host"] for machine in together["machine"]} == {os.uname().nodename}
 
 
+@pytest.mark.slow
 def test_jobs_is_the_same_path_on_this_machine_and_leaves_nothing_running(small):
     assert main(["sweep", "small.yaml", "--db", "two.db", "--jobs", "2"]) == 0
     assert len(counted("two.db")) == 6
@@ -112,6 +114,7 @@ def test_jobs_is_the_same_path_on_this_machine_and_leaves_nothing_running(small)
     assert not any("harness.runner.server" in command for command in left)
 
 
+@pytest.mark.slow
 def test_a_worker_with_other_sources_is_refused_before_any_run(small, capsys, monkeypatch):
     monkeypatch.setattr("harness.runner.cluster.sources_hash", lambda: "0" * 64)
     assert main(["sweep", "small.yaml", "--db", "other.db", "--cluster", "local:1"]) == 2
@@ -119,6 +122,7 @@ def test_a_worker_with_other_sources_is_refused_before_any_run(small, capsys, mo
     assert len(tables.runs("other.db")) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "said"),
     [

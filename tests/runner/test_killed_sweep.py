@@ -17,6 +17,7 @@ def killed(tmp_path):
         process.kill()
 
 
+@pytest.mark.slow
 def test_a_sweep_killed_at_random_moments_loses_nothing_and_leaves_no_process(killed):
     """A short form of the script `kill_sweep.py`."""
     for _ in range(3):
@@ -25,6 +26,7 @@ def test_a_sweep_killed_at_random_moments_loses_nothing_and_leaves_no_process(ki
     assert killed.all_gone()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [[], ["--jobs", "2"]])
 def test_ctrl_c_ends_every_process_keeps_what_is_done_and_says_how_to_go_on(killed, jobs):
     sweep = killed.start(*jobs)

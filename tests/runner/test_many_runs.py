@@ -1,8 +1,11 @@
 """A backend that crashes now and then costs those runs only, and little time."""
 
+import pytest
+
 from tests.runner.thousand_runs import sweep
 
 
+@pytest.mark.slow
 def test_a_segfault_on_every_tenth_run_leaves_nine_of_ten_results_and_rows_that_say_so(tmp_path):
     """A short form of the script `thousand_runs.py`."""
     took, rows = sweep(tmp_path, 50)

@@ -10,8 +10,8 @@ from harness.measure.verdicts import judge
 from harness.runner.execute import execute
 from harness.runner.key import point_key
 from harness.runner.preparation import prepare
-from harness.runner.servers import asked_of, mesh_of
-from harness.runner.setting import derived_parameters
+from harness.runner.scene_of_point import derived_parameters
+from harness.runner.servers import mesh_of, on_demand_of
 from harness.scene.launch import PlacementError
 from harness.store.records import RunRecord
 from harness.store.tables import run_table
@@ -43,7 +43,7 @@ def flown(name):
         mesh = mesh_of(experiment, point, meshes)
         status, reason, metrics = "ok", None, {}
         try:
-            metrics = execute(point, mesh, asked=asked_of(experiment)).metrics
+            metrics = execute(point, mesh, on_demand=on_demand_of(experiment)).metrics
         except (PlacementError, InputError) as error:
             status, reason = "rejected", str(error)
         parameters = {**point.parameters, **derived_parameters(point, mesh)}
@@ -51,6 +51,7 @@ def flown(name):
     return experiment, run_table(records)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in CASES if not name.startswith("hundred-")])
 def test_all_that_a_case_expects_holds(name):
     experiment, runs = flown(name)

@@ -46,6 +46,7 @@ def test_a_thousand_equal_bodies_are_placed_at_any_packing(packing):
     assert_placed(place(radii, box, np.random.default_rng(1), overlap=False), radii, box)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("packing", [0.3, 0.4, 0.5, 0.55])
 def test_bodies_of_mixed_sizes_are_placed_where_chance_and_lattices_fail(packing):
     radii = np.random.default_rng(1).uniform(0.25, 0.75, 300)
@@ -65,6 +66,7 @@ def test_many_bodies_at_a_packing_of_three_tenths():
     assert_placed(place(radii, box, np.random.default_rng(1), overlap=False), radii, box)
 
 
+@pytest.mark.slow
 def test_the_same_state_of_the_generator_gives_the_same_places():
     radii = np.random.default_rng(1).uniform(0.25, 0.75, 200)
     for packing in (0.2, 0.5):

@@ -71,6 +71,7 @@ def test_no_files_take_no_child():
     assert open_meshes([]) == {}
 
 
+@pytest.mark.slow
 def test_bad_files_cost_only_themselves(cube, tmp_path):
     (tmp_path / "bad.obj").write_text("nonsense")
     results = open_meshes([tmp_path / "bad.obj", cube, tmp_path / "none.ply", cube])
@@ -81,18 +82,21 @@ def test_bad_files_cost_only_themselves(cube, tmp_path):
     assert len(caught.value.problems) == 2
 
 
+@pytest.mark.slow
 def test_a_file_that_takes_too_much_memory_costs_only_itself(cube, large):
     results = open_meshes([large, cube], memory=100 * MIB)
     assert results[large] == "large.obj: reading it takes more than 0.0977 GiB of memory"
     assert not isinstance(results[cube], str)
 
 
+@pytest.mark.slow
 def test_a_file_that_takes_too_long_costs_only_itself(cube, large):
     results = open_meshes([large, cube], timeout=0.5)
     assert results[large] == "large.obj: reading it took longer than 0.5 s"
     assert not isinstance(results[cube], str)
 
 
+@pytest.mark.slow
 def test_a_crash_costs_only_its_file_and_is_named(cube, tmp_path, bad_reader):
     crashed, killed, left = (tmp_path / name for name in ("signal.11.ply", "signal.9.ply", "exit.3.ply"))
     results = open_meshes([crashed, killed, left, cube])

@@ -33,7 +33,8 @@ def test_real_meshes_keep_their_faces_and_close_once_equal_vertices_are_one(name
     mesh = read_mesh(SHIPPED / name)
     assert (len(mesh.faces), len(mesh.vertices)) == (faces, vertices)
     assert mesh.watertight
-    assert [note for note in mesh.notes if "not plane" not in note] == []
+    # the ball's squares are bent
+    assert mesh.notes == () or (name == "soccerball.obj" and "polygons are not plane" in mesh.notes[0])
     assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.5, rel=1e-14)
 
 

@@ -15,6 +15,7 @@ from harness.scene.topology import area, topology, volume
 MESHES = Path(__file__).parents[2] / "meshes"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("faces", [40, 41, 68, 90, 91, 118, 500, 1752, 1753, 9868, 17001, 17002, 17003, 20010])
 def test_a_pumpkin_has_exactly_the_faces_asked_for_and_is_closed_when_they_are_even(faces):
     vertices, triangles = pumpkin(faces)

@@ -236,7 +236,7 @@ def of_version(version: int) -> Callable[[Path], None]:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "complaint"),
+    ("spoil", "message"),
     [
         (corrupt, "is damaged"),
         (truncated, "is damaged"),
@@ -247,12 +247,12 @@ def of_version(version: int) -> Callable[[Path], None]:
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_and_left_as_it_is(
-    path: Path, spoil: Callable[[Path], None], complaint: str
+    path: Path, spoil: Callable[[Path], None], message: str
 ) -> None:
     spoil(path)
     before = path.read_bytes()
     for use in (Database.open, tables.runs, tables.experiments, tables.sweeps):
-        with pytest.raises(InputError, match=complaint) as caught:
+        with pytest.raises(InputError, match=message) as caught:
             use(path)
         assert str(caught.value).startswith(f"{path}: ")
         assert "nothing was changed" in str(caught.value)
@@ -361,13 +361,13 @@ def as_nobody(action: Callable[[], None]) -> str:
         os._exit(0)
     os.close(writing)
     os.waitpid(child, 0)
-    with os.fdopen(reading) as told:
-        return told.read()
+    with os.fdopen(reading) as printed:
+        return printed.read()
 
 
 @pytest.fixture
 def read_only(path: Path) -> Path:
-    """A database with one listing, in a folder that nobody may write to."""
+    """A database with one listing, in a folder that may not be written to."""
     with Database.open(path) as database:
         listed(database, begin(database), GRID)
     for folder in path.parents:
@@ -379,20 +379,20 @@ def read_only(path: Path) -> Path:
     return path
 
 
-def test_a_read_only_place_is_said(read_only: Path) -> None:
-    told = as_nobody(lambda: Database.open(read_only).close())
-    assert told.startswith("InputError")
-    assert "cannot be written to" in told
+def test_a_read_only_folder_is_refused(read_only: Path) -> None:
+    printed = as_nobody(lambda: Database.open(read_only).close())
+    assert printed.startswith("InputError")
+    assert "cannot be written to" in printed
 
 
-def test_a_read_only_file_in_a_writable_place_is_said(read_only: Path) -> None:
+def test_a_read_only_file_in_a_writable_folder_is_refused(read_only: Path) -> None:
     read_only.parent.chmod(0o777)
-    told = as_nobody(lambda: Database.open(read_only).close())
-    assert "InputError" in told
-    assert "cannot be written to" in told
+    printed = as_nobody(lambda: Database.open(read_only).close())
+    assert "InputError" in printed
+    assert "cannot be written to" in printed
 
 
-def test_results_in_a_read_only_place_can_be_read(read_only: Path) -> None:
+def test_results_in_a_read_only_folder_can_be_read(read_only: Path) -> None:
     def read() -> None:
         raise AssertionError([record.name for record in tables.experiments(read_only)])
 
@@ -407,8 +407,8 @@ def test_runs_that_lack_a_metric_are_found_by_their_newest_run(database: Databas
     add(database, sweep, "tree-5", 0, "failed")
     history = database.history
     asked = {"grid-5": {"reversal_error"}, "tree-5": {"reversal_error"}, "unknown": {"frames"}}
-    assert history.without(asked) == [("grid-5", 1)]
-    assert history.without({"grid-5": set()}) == []
+    assert history.lacking_metrics(asked) == [("grid-5", 1)]
+    assert history.lacking_metrics({"grid-5": set()}) == []
     again = begin(database)
     add(database, again, "grid-5", 1, reversal_error=0.0)
-    assert database.history.without(asked) == []
+    assert database.history.lacking_metrics(asked) == []

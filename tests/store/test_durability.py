@@ -50,7 +50,7 @@ def start(path: Path, statement: int = 0) -> subprocess.Popen[str]:
 
 
 def whole_runs(path: Path) -> int:
-    """Runs in the file, after a check that it is sound and that each of them is whole."""
+    """Runs in the file, after a check that it is undamaged and that each of them is whole."""
     records = tables.run_records(path)
     raw = sqlite3.connect(path)
     assert raw.execute("PRAGMA integrity_check").fetchone() == ("ok",)
@@ -61,6 +61,7 @@ def whole_runs(path: Path) -> int:
     return len(records)
 
 
+@pytest.mark.slow
 def test_a_kill_at_a_random_moment_loses_at_most_the_run_in_flight(path: Path) -> None:
     order = random.Random(259)
     kept = 0
@@ -78,6 +79,7 @@ def test_a_kill_at_a_random_moment_loses_at_most_the_run_in_flight(path: Path) -
         kept = found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("statement", range(1, 10))
 def test_a_death_between_any_two_statements_of_a_run_leaves_the_runs_before(path: Path, statement: int) -> None:
     writer = start(path, statement)

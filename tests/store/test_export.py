@@ -1,4 +1,4 @@
-"""`harness export`: every run, once, in the promised shape."""
+"""`harness export`: every run, once, in the documented form."""
 
 from __future__ import annotations
 

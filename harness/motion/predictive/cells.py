@@ -11,13 +11,14 @@ into that ball from outside crosses into its last cell while the large one is am
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from harness.kernel import step
-from harness.motion.predictive.state import GRID, PLACE, Cells, Floats, Indices, Ints, X
+from harness.motion.predictive.state import GRID, Cells, Floats, Indices, Record, Records, Spheres
 
 # Radii of one class are within this ratio.
 CLASS_RATIO = 3.0
@@ -27,6 +28,31 @@ CELLS_PER_SPHERE = 8
 SLACK = 1e-6
 
 ALL = 3  # instead of an axis: look at all cells around
+
+
+class Layer(NamedTuple):
+    """Which of the cells around a sphere to look at.
+
+    axis : 0, 1, 2: the layer of 9 that lies ahead along it; `ALL`: all 27
+    step : 1 up the axis, -1 down
+    """
+
+    axis: int
+    step: int
+
+
+AROUND = Layer(ALL, 0)
+
+
+class Block(NamedTuple):
+    """The first and the last cell along each axis."""
+
+    from_x: int
+    to_x: int
+    from_y: int
+    to_y: int
+    from_z: int
+    to_z: int
 
 
 def build(half_box: Floats, radii: Floats, skin: float) -> Cells:
@@ -39,14 +65,12 @@ def build(half_box: Floats, radii: Floats, skin: float) -> Cells:
     skin : how much wider than a diameter the cells must be, m (for neighbour lists)
     """
     classes = size_classes(radii)
-    grids = int(classes.max(initial=0)) + 1
-    shapes = np.ones((grids, 4), dtype=np.int64)
-    frames = np.zeros((grids, 8))
+    grids = np.zeros(int(classes.max(initial=0)) + 1, dtype=GRID)
     needed = np.zeros(3)
     finer = 0.0
     width = np.inf  # of the narrowest cell of a finer grid
-    for grid in reversed(range(grids)):
-        members = radii[classes == grid]
+    for level in reversed(range(len(grids))):
+        members = radii[classes == level]
         largest = float(members.max(initial=0.0))
         # few small spheres stand in wide cells: a margin of their own size would be flown through again and again
         margin = max(0.1 * largest, 0.5 * finer, 0.25 * width) if finer else 0.0
@@ -54,20 +78,17 @@ def build(half_box: Floats, radii: Floats, skin: float) -> Cells:
         shape = cell_counts(
             half_box, least * (1.0 + SLACK) + 1e-14 * half_box.max(), CELLS_PER_SPHERE * len(members) + 27
         )
-        shapes[grid, :3] = shape
-        frames[grid, :3] = -half_box
-        frames[grid, 3:6] = 2.0 * half_box / shape
-        frames[grid, 6:] = largest, margin
-        finer, width = max(finer, largest), min(width, float(frames[grid, 3:6].min()))
-        needed = np.maximum(needed, frames[grid, 3:6] + largest)
-    sizes = shapes[:, :3].prod(axis=1)
-    shapes[:, 3] = np.concatenate(([0], np.cumsum(sizes)[:-1]))
+        side = 2.0 * half_box / shape
+        grids[level] = shape, 0, -half_box, side, largest, margin
+        finer, width = max(finer, largest), min(width, float(side.min()))
+        needed = np.maximum(needed, side + largest)
+    sizes = grids["shape"].prod(axis=1)
+    grids["first"] = np.concatenate(([0], np.cumsum(sizes)[:-1]))
     count = len(radii)
     return Cells(
         heads=np.full(int(sizes.sum()), count, dtype=np.uint32),
         following=np.full(count + 1, count, dtype=np.uint32),
-        shapes=shapes,
-        frames=frames,
+        grids=grids,
         renewals=np.full(count, np.inf),
     )
 
@@ -97,36 +118,36 @@ def cell_counts(half_box: Floats, least: Floats, most: int) -> NDArray[np.int64]
 
 
 @step
-def index(cells: Cells, grid: int, axis: int, x: float) -> int:
+def index(grid: Record, axis: int, x: float) -> int:
     """Cell along an axis; the outermost cells reach out to infinity."""
-    place = (x - cells.frames[grid, axis]) / cells.frames[grid, 3 + axis]
-    return int(min(max(place, 0.0), float(cells.shapes[grid, axis] - 1)))
+    place = (x - grid.low[axis]) / grid.side[axis]
+    return int(min(max(place, 0.0), float(grid.shape[axis] - 1)))
 
 
 @step
-def cell_number(cells: Cells, grid: int, ix: int, iy: int, iz: int) -> int:
+def cell_number(grid: Record, ix: int, iy: int, iz: int) -> int:
     """Place of a cell in `heads`."""
-    return int(cells.shapes[grid, 3] + (ix * cells.shapes[grid, 1] + iy) * cells.shapes[grid, 2] + iz)
+    return int(grid.first + (ix * grid.shape[1] + iy) * grid.shape[2] + iz)
 
 
 @step
-def cell_of(cells: Cells, marks: Ints, k: int) -> int:
-    """Place in `heads` of the cell in which sphere k stands."""
-    return cell_number(cells, marks[k, GRID], marks[k, PLACE], marks[k, PLACE + 1], marks[k, PLACE + 2])
+def cell_of(cells: Cells, sphere: Record) -> int:
+    """Place in `heads` of the cell in which a sphere stands."""
+    return cell_number(cells.grids[sphere.size_class], sphere.cell[0], sphere.cell[1], sphere.cell[2])
 
 
 @step
-def insert(cells: Cells, marks: Ints, k: int) -> None:
-    """Sphere k becomes the first of the cell that its marks name."""
-    cell = cell_of(cells, marks, k)
+def insert(cells: Cells, schedule: Records, k: int) -> None:
+    """Sphere k becomes the first of the cell that its record names."""
+    cell = cell_of(cells, schedule[k])
     cells.following[k] = cells.heads[cell]
     cells.heads[cell] = k
 
 
 @step
-def remove(cells: Cells, marks: Ints, k: int) -> None:
+def remove(cells: Cells, schedule: Records, k: int) -> None:
     """Sphere k leaves its cell."""
-    cell = cell_of(cells, marks, k)
+    cell = cell_of(cells, schedule[k])
     following = cells.following
     p = cells.heads[cell]
     if p == k:
@@ -138,11 +159,12 @@ def remove(cells: Cells, marks: Ints, k: int) -> None:
 
 
 @step
-def settle(cells: Cells, rows: Floats, marks: Ints, k: int) -> None:
-    """Put sphere k, which stands in no cell, where its row says."""
+def settle(cells: Cells, spheres: Spheres, k: int) -> None:
+    """Put sphere k, which stands in no cell, where its position says."""
+    own = spheres.schedule[k]
     for axis in range(3):
-        marks[k, PLACE + axis] = index(cells, marks[k, GRID], axis, rows[k, X + axis])
-    insert(cells, marks, k)
+        own.cell[axis] = index(cells.grids[own.size_class], axis, spheres.motions[k].position[axis])
+    insert(cells, spheres.schedule, k)
 
 
 @step
@@ -162,59 +184,62 @@ def gather_cell(cells: Cells, cell: int, found: Indices, n: int) -> int:
 
 
 @step
-def block(
-    cells: Cells, grid: int, ix: int, iy: int, iz: int, axis: int, step: int
-) -> tuple[int, int, int, int, int, int]:
-    """First and last cell, on each axis, of the 27 around one, or of the layer of 9 that lies ahead along an axis."""
-    shapes = cells.shapes
-    from_x, to_x = max(ix - 1, 0), min(ix + 1, shapes[grid, 0] - 1)
-    from_y, to_y = max(iy - 1, 0), min(iy + 1, shapes[grid, 1] - 1)
-    from_z, to_z = max(iz - 1, 0), min(iz + 1, shapes[grid, 2] - 1)
+def block(grid: Record, ix: int, iy: int, iz: int, layer: Layer) -> Block:
+    """The 27 cells around one, or the layer of 9 that lies ahead."""
+    axis, step = layer.axis, layer.step
+    from_x, to_x = max(ix - 1, 0), min(ix + 1, grid.shape[0] - 1)
+    from_y, to_y = max(iy - 1, 0), min(iy + 1, grid.shape[1] - 1)
+    from_z, to_z = max(iz - 1, 0), min(iz + 1, grid.shape[2] - 1)
     if axis == 0:
         from_x, to_x = max(from_x, ix + step), min(to_x, ix + step)
     elif axis == 1:
         from_y, to_y = max(from_y, iy + step), min(to_y, iy + step)
     elif axis == 2:
         from_z, to_z = max(from_z, iz + step), min(to_z, iz + step)
-    return from_x, to_x, from_y, to_y, from_z, to_z
+    return Block(from_x, to_x, from_y, to_y, from_z, to_z)
 
 
 @step
-def gather_around(
-    cells: Cells, grid: int, ix: int, iy: int, iz: int, axis: int, step: int, found: Indices, n: int
-) -> int:
-    """Append the spheres of the 27 cells around one, or of the layer of 9 that lies ahead along an axis."""
-    from_x, to_x, from_y, to_y, from_z, to_z = block(cells, grid, ix, iy, iz, axis, step)
-    for x in range(from_x, to_x + 1):
-        for y in range(from_y, to_y + 1):
-            cell = cell_number(cells, grid, x, y, 0)
-            for z in range(from_z, to_z + 1):
+def gather_block(cells: Cells, grid: Record, block: Block, found: Indices, n: int) -> int:
+    """Append the spheres of a block of cells."""
+    for x in range(block.from_x, block.to_x + 1):
+        for y in range(block.from_y, block.to_y + 1):
+            cell = cell_number(grid, x, y, 0)
+            for z in range(block.from_z, block.to_z + 1):
                 n = gather_cell(cells, cell + z, found, n)
     return n
 
 
 @step
-def gather_ball(cells: Cells, grid: int, x: float, y: float, z: float, reach: float, found: Indices, n: int) -> int:
+def gather_ball(cells: Cells, grid: Record, x: float, y: float, z: float, reach: float, found: Indices, n: int) -> int:
     """Append the spheres of all cells that come within `reach` of a point."""
-    for ix in range(index(cells, grid, 0, x - reach), index(cells, grid, 0, x + reach) + 1):
-        gap_x = distance_to_cell(cells, grid, 0, ix, x)
-        for iy in range(index(cells, grid, 1, y - reach), index(cells, grid, 1, y + reach) + 1):
-            gap_y = distance_to_cell(cells, grid, 1, iy, y)
+    for ix in range(index(grid, 0, x - reach), index(grid, 0, x + reach) + 1):
+        gap_x = distance_to_cell(grid, 0, ix, x)
+        for iy in range(index(grid, 1, y - reach), index(grid, 1, y + reach) + 1):
+            gap_y = distance_to_cell(grid, 1, iy, y)
             rest = reach * reach - gap_x * gap_x - gap_y * gap_y
             if rest < 0.0:
                 continue
             half = sqrt(rest)
-            column = cell_number(cells, grid, ix, iy, 0)
-            for iz in range(index(cells, grid, 2, z - half), index(cells, grid, 2, z + half) + 1):
+            column = cell_number(grid, ix, iy, 0)
+            for iz in range(index(grid, 2, z - half), index(grid, 2, z + half) + 1):
                 n = gather_cell(cells, column + iz, found, n)
     return n
 
 
 @step
-def distance_to_cell(cells: Cells, grid: int, axis: int, place: int, x: float) -> float:
+def distance_to_cell(grid: Record, axis: int, place: int, x: float) -> float:
     """From x to the nearest point of a cell, along an axis."""
-    side = cells.frames[grid, 3 + axis]
-    low = cells.frames[grid, axis] + place * side
+    side = grid.side[axis]
+    low = grid.low[axis] + place * side
     below = low - x if place > 0 else 0.0
-    above = x - (low + side) if place < cells.shapes[grid, axis] - 1 else 0.0
+    above = x - (low + side) if place < grid.shape[axis] - 1 else 0.0
     return max(below, above, 0.0)
+
+
+@step
+def next_face(grid: Record, axis: int, place: int, up: int) -> float:
+    """Where a cell begins along an axis, or the infinity that one moves to beyond the outermost cells."""
+    if 0 < place < grid.shape[axis]:
+        return float(grid.low[axis] + place * grid.side[axis])
+    return inf if up == 1 else -inf

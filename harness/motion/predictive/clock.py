@@ -8,51 +8,40 @@ from __future__ import annotations
 
 from harness.kernel import step
 from harness.motion.predictive import tournament
-from harness.motion.predictive.state import (
-    EPOCH,
-    EPOCH_REST,
-    FRESH,
-    KIND,
-    MARK,
-    NONE,
-    NOW,
-    PAIR_TIME,
-    POPS,
-    REBASINGS,
-    TIME,
-    TOUCHED,
-    VX,
-    Floats,
-    World,
-    X,
-)
+from harness.motion.predictive.state import FRESH, NONE, Record, World
 
 
 @step
-def relative(clock: Floats, time: float) -> float:
+def relative(clock: Record, time: float) -> float:
     """An absolute time (s), counted from the base."""
-    return float((time - clock[EPOCH]) - clock[EPOCH_REST])
+    return float((time - clock.epoch) - clock.epoch_rest)
+
+
+@step
+def absolute(clock: Record, now: float) -> float:
+    """Seconds since the start."""
+    return float(clock.epoch + (clock.epoch_rest + now))
 
 
 @step
 def catch_up(world: World, k: int, now: float) -> None:
     """Move sphere k to the present."""
-    rows = world.spheres.rows
-    flown = now - rows[k, TIME]
+    motion = world.spheres.motions[k]
+    flown = now - motion.time
     for axis in range(3):
-        rows[k, X + axis] += rows[k, VX + axis] * flown
-    rows[k, TIME] = now
+        motion.position[axis] += motion.velocity[axis] * flown
+    motion.time = now
 
 
 @step
 def rebase(world: World) -> None:
     """Make the present the origin of time. Done every so many events, however the run is cut into pieces."""
     if world.rules.response == NONE:
-        # Onset times are known again by their bits; those of moved rows differ, so all look again
-        base = world.tally.clock[NOW]
-        for k in range(world.spheres.rows.shape[0]):
+        # Onset times are known again by their bits; those of moved spheres differ, so all look again
+        base = world.tally.clock[0].now
+        for k in range(world.spheres.motions.size):
             catch_up(world, k, base)
-            world.spheres.marks[k, KIND] = FRESH
+            world.spheres.schedule[k].kind = FRESH
             world.agenda.times[world.agenda.times.size // 2 + k] = base
     shift(world)
 
@@ -60,22 +49,22 @@ def rebase(world: World) -> None:
 @step
 def shift(world: World) -> None:
     """Count all times from the present."""
-    clock, agenda = world.tally.clock, world.agenda
-    base = clock[NOW]
+    clock, agenda = world.tally.clock[0], world.agenda
+    base = clock.now
     leaf = agenda.times.size // 2
-    for k in range(world.spheres.rows.shape[0]):
-        world.spheres.rows[k, TIME] -= base
-        world.spheres.book[k, TOUCHED] -= base
-        world.spheres.book[k, PAIR_TIME] -= base
+    for k in range(world.spheres.motions.size):
+        world.spheres.motions[k].time -= base
+        world.spheres.schedule[k].last_hit -= base
+        world.spheres.schedule[k].pair_time -= base
         world.spheres.contacts[k] -= base
         world.cells.renewals[k] -= base
         agenda.times[leaf + k] -= base
-    whole = clock[EPOCH] + base
+    whole = clock.epoch + base
     # Exact remainder of the addition (Dekker), as the base is never larger than the new epoch
-    clock[EPOCH_REST] += (clock[EPOCH] - whole) + base if clock[EPOCH] >= base else (base - whole) + clock[EPOCH]
-    clock[EPOCH] = whole
-    clock[MARK] -= base
-    clock[NOW] = 0.0
-    world.tally.counts[POPS] = 0
-    world.tally.counts[REBASINGS] += 1
-    tournament.rebuild(agenda, world.spheres.marks)
+    clock.epoch_rest += (clock.epoch - whole) + base if clock.epoch >= base else (base - whole) + clock.epoch
+    clock.epoch = whole
+    world.tally.onset[0].time -= base
+    clock.now = 0.0
+    world.tally.counts[0].since_rebasing = 0
+    world.tally.counts[0].rebasings += 1
+    tournament.rebuild(agenda, world.spheres.schedule)

@@ -3,90 +3,82 @@
 from __future__ import annotations
 
 from harness.kernel import kernel
-from harness.motion.predictive.solids import Solids, motion_of
-from harness.motion.predictive.state import ADVANCES, BOX_TESTS, LABEL, NARROW_TESTS, VX, World
-from harness.motion.predictive.state import STALLED as STALLED_EVENTS
-from harness.motion.predictive.windows import (
-    APART,
-    DUE,
-    NEAR,
-    OTHER,
-    PARTING,
-    PHASE,
-    TOUCHING,
-    UNSURE,
-    Windows,
-    remove,
-)
-from harness.narrowphase.advancement import IMPACT, NEVER, STALLED, time_of_impact, time_of_wall_impact
-from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, Start, time_of_mesh_impact
-from harness.narrowphase.parting import time_of_mesh_parting, time_of_parting
+from harness.motion.predictive.solids import SolidWorld, motion_of
+from harness.motion.predictive.windows import APART, DUE, NEAR, PARTING, TOUCHING, UNSURE, remove
+from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
+from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
+from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
+from harness.narrowphase.tree_pairs import NodePair
+from harness.narrowphase.verdicts import SearchVerdict
 
 
 @kernel
-def search_pair(world: World, body: Solids, windows: Windows, k: int, w: int, now: float) -> None:
+def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     """Find the hit of body k in its window w, which is due; close the window if there is none."""
-    rows, body_marks, counts = world.spheres.rows, world.spheres.marks, world.tally.counts
-    p = int(windows.marks[w, OTHER])
+    world, body = solid.world, solid.body
+    motions, schedule, counts = world.spheres.motions, world.spheres.schedule, world.tally.counts[0]
+    window, warm = solid.windows.pool[w], solid.windows.starts[w]
+    p = int(window.other)
     # The labels order the two, so that it does not matter who holds the window
-    swap = body_marks[p, LABEL] < body_marks[k, LABEL]
+    swap = schedule[p].label < schedule[k].label
     i = p if swap else k
     j = k if swap else p
-    a, b = motion_of(body, rows, i, now), motion_of(body, rows, j, now)
+    a, b = motion_of(body, motions, i, now), motion_of(body, motions, j, now)
     tolerance = 0.5 * body.tolerance * (a.size + b.size)
-    left = max(windows.ends[w] - now, 0.0)
-    hull, phase, seeds = body.shape.hull, windows.marks[w, PHASE], windows.seeds
-    hull_seeds = seeds[w, 0], seeds[w, 1], seeds[w, 2], seeds[w, 3]
+    left = max(window.end - now, 0.0)
+    hull, phase = body.shape.hull, window.phase
+    hull_seeds = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
     coarse = body.concave and phase == APART
-    if coarse or not body.concave:
-        if phase == TOUCHING:
-            found = time_of_parting(hull, body.inradius, a, b, 0.0, left, 2.0 * tolerance, hull_seeds)
+    if phase == TOUCHING:
+        if body.concave:
+            ended = end_of_mesh_contact(body.shape, body.shape, a, b, 0.0, left, 2.0 * tolerance)
         else:
-            enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
-            found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
-        verdict, time, hull_seeds, steps = found.verdict, found.time, found.seeds, found.steps
+            ended = end_of_hull_contact(hull, hull, a, b, 0.0, left, 2.0 * tolerance)
+        verdict, time, steps = ended.verdict, ended.time, ended.steps
+    elif coarse or not body.concave:
+        enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
+        found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
+        verdict, time, hull_seeds, steps = found.verdict, found.time, found.warm_start, found.steps
     else:
-        start = Start(hull_seeds, (seeds[w, 4], seeds[w, 5]))
-        if phase == TOUCHING:
-            mesh_found = time_of_mesh_parting(body.shape, a, b, 0.0, left, 2.0 * tolerance, start)
-        else:
-            mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
+        start = MeshWarmStart(hull_seeds, NodePair(warm.surfaces[0], warm.surfaces[1]))
+        mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
         verdict, time, steps = mesh_found.verdict, mesh_found.time, mesh_found.steps
-        hull_seeds, (seeds[w, 4], seeds[w, 5]) = mesh_found.start
-    seeds[w, 0], seeds[w, 1], seeds[w, 2], seeds[w, 3] = hull_seeds
-    counts[NARROW_TESTS] += 1
-    counts[ADVANCES] += steps
-    if verdict == NEVER:
-        remove(windows, k, w)
+        hull_seeds, (warm.surfaces[0], warm.surfaces[1]) = mesh_found.warm_start
+    warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3] = hull_seeds
+    counts.narrow_tests += 1
+    counts.advancement_steps += steps
+    if verdict == SearchVerdict.NEVER:
+        remove(solid.windows, k, w)
         return
-    windows.times[w] = now + time
+    window.time = now + time
     # What has just parted cannot touch but by rounding
-    if verdict == STALLED or (phase == PARTING and time == 0.0):
+    if verdict == SearchVerdict.STALLED or (phase == PARTING and time == 0.0):
         if time < world.rules.pause:
-            windows.times[w] = now + world.rules.pause
-            counts[STALLED_EVENTS] += 1
+            window.time = now + world.rules.pause
+            counts.stalled_events += 1
     elif coarse:
-        windows.marks[w, PHASE] = NEAR
+        window.phase = NEAR
     elif phase == TOUCHING:
-        windows.marks[w, PHASE] = PARTING
+        window.phase = PARTING
     else:
-        windows.marks[w, PHASE] = TOUCHING if phase == UNSURE and time == 0.0 else DUE
+        window.phase = TOUCHING if phase == UNSURE and time == 0.0 else DUE
 
 
 @kernel
-def search_wall(world: World, body: Solids, windows: Windows, k: int, axis: int, now: float) -> None:
+def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     """Find the hit of body k on the wall ahead along an axis."""
-    counts, rules = world.tally.counts, world.rules
-    face = 2 * axis + (1 if world.spheres.rows[k, VX + axis] > 0.0 else 0)
-    flight = motion_of(body, world.spheres.rows, k, now)
+    world, body = solid.world, solid.body
+    counts, rules, window = world.tally.counts[0], world.rules, solid.windows.walls[k, axis]
+    face = 2 * axis + (1 if world.spheres.motions[k].velocity[axis] > 0.0 else 0)
+    flight = motion_of(body, world.spheres.motions, k, now)
     found = time_of_wall_impact(
         body.shape.hull, flight, face, body.scale * rules.half_box[axis], 0.0, 1e300, body.tolerance * flight.size
     )
-    counts[BOX_TESTS] += 1
-    counts[ADVANCES] += found.steps
-    windows.wall_times[k, axis] = now + found.time
-    if found.verdict == IMPACT:
-        windows.wall_phases[k, axis] = DUE
+    counts.box_tests += 1
+    counts.advancement_steps += found.steps
+    window.time = now + found.time
+    if found.verdict == SearchVerdict.FOUND:
+        window.phase = DUE
     elif found.time < rules.pause:
-        windows.wall_times[k, axis] = now + rules.pause
-        counts[STALLED_EVENTS] += 1
+        window.time = now + rules.pause
+        counts.stalled_events += 1

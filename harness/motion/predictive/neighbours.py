@@ -10,65 +10,69 @@ from __future__ import annotations
 from math import inf, sqrt
 
 from harness.kernel import step
-from harness.motion.predictive.cells import ALL, gather_around, remove, settle
-from harness.motion.predictive.state import CAPACITY, PLACE, RADIUS, TIME, VX, Cells, Floats, Indices, Ints, Lists, X
+from harness.motion.predictive.cells import AROUND, block, gather_block, remove, settle
+from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
 
 
 @step
-def renew(cells: Cells, lists: Lists, rows: Floats, marks: Ints, k: int, skin: float, found: Indices) -> bool:
-    """Anchor sphere k where it is (its row stands at the present) and list its neighbours. False: no room in a list."""
+def renew(world: World, k: int) -> bool:
+    """Anchor sphere k where it is (at the present) and list its neighbours. False: no room in a list."""
+    spheres, cells, lists, found = world.spheres, world.cells, world.lists, world.scratch.found
     members = lists.members
-    for m in range(1, members[k, 0] + 1):
-        strike_out(members, members[k, m], k)
+    own, place = members[k], spheres.schedule[k]
+    for m in range(own.count):
+        strike_out(members[own.who[m]], k)
     for axis in range(3):
-        lists.anchors[k, axis] = rows[k, X + axis]
-    remove(cells, marks, k)
-    settle(cells, rows, marks, k)
-    count = gather_around(cells, 0, marks[k, PLACE], marks[k, PLACE + 1], marks[k, PLACE + 2], ALL, 0, found, 0)
+        lists.anchors[k, axis] = spheres.motions[k].position[axis]
+    remove(cells, spheres.schedule, k)
+    settle(cells, spheres, k)
+    around = block(cells.grids[0], place.cell[0], place.cell[1], place.cell[2], AROUND)
+    count = gather_block(cells, cells.grids[0], around, found, 0)
     degree = 0
     room = True
     for m in range(count):
         p = found[m]
-        if p != k and near(lists, rows, k, p, skin):
-            if degree == CAPACITY - 1 or members[p, 0] == CAPACITY - 1:
+        if p != k and near(lists, spheres.motions, k, p, world.rules.skin):
+            theirs = members[p]
+            if degree == CAPACITY or theirs.count == CAPACITY:
                 room = False
                 break
+            own.who[degree] = p
             degree += 1
-            members[k, degree] = p
-            members[p, 0] += 1
-            members[p, members[p, 0]] = k
-    members[k, 0] = degree
+            theirs.who[theirs.count] = k
+            theirs.count += 1
+    own.count = degree
     return room
 
 
 @step
-def near(lists: Lists, rows: Floats, k: int, p: int, skin: float) -> bool:
+def near(lists: Lists, motions: Records, k: int, p: int, skin: float) -> bool:
     """Whether two anchors are within the radii and the skin."""
     anchors = lists.anchors
     x, y, z = anchors[p, 0] - anchors[k, 0], anchors[p, 1] - anchors[k, 1], anchors[p, 2] - anchors[k, 2]
-    reach = rows[k, RADIUS] + rows[p, RADIUS] + skin
+    reach = motions[k].radius + motions[p].radius + skin
     return bool(x * x + y * y + z * z < reach * reach)
 
 
 @step
-def strike_out(members: Indices, p: int, k: int) -> None:
-    """Take k off p's list."""
-    last = members[p, 0]
-    for m in range(1, last):
-        if members[p, m] == k:
-            members[p, m] = members[p, last]
+def strike_out(neighbours: Record, k: int) -> None:
+    """Take k off a list."""
+    last = neighbours.count - 1
+    for m in range(last):
+        if neighbours.who[m] == k:
+            neighbours.who[m] = neighbours.who[last]
             break
-    members[p, 0] = last - 1
+    neighbours.count = last
 
 
 @step
-def time_to_leave(lists: Lists, rows: Floats, k: int, skin: float) -> float:
+def time_to_leave(lists: Lists, motions: Records, k: int, skin: float) -> float:
     """When sphere k will be half a skin away from its anchor, on its own clock; inf at rest."""
-    anchors = lists.anchors
-    x, y, z = rows[k, X] - anchors[k, 0], rows[k, X + 1] - anchors[k, 1], rows[k, X + 2] - anchors[k, 2]
-    speed = rows[k, VX] * rows[k, VX] + rows[k, VX + 1] * rows[k, VX + 1] + rows[k, VX + 2] * rows[k, VX + 2]
-    outward = x * rows[k, VX] + y * rows[k, VX + 1] + z * rows[k, VX + 2]
+    anchors, position, velocity = lists.anchors, motions[k].position, motions[k].velocity
+    x, y, z = position[0] - anchors[k, 0], position[1] - anchors[k, 1], position[2] - anchors[k, 2]
+    speed = velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]
+    outward = x * velocity[0] + y * velocity[1] + z * velocity[2]
     # A little early, so that rounding cannot make it late
     left = 0.2499 * skin * skin - (x * x + y * y + z * z)
     root = sqrt(max(outward * outward + speed * left, 0.0))
-    return rows[k, TIME] + max((root - outward) / speed, 0.0) if speed > 0.0 else inf
+    return motions[k].time + max((root - outward) / speed, 0.0) if speed > 0.0 else inf

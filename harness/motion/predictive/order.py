@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.motion.predictive.state import LABEL, NOW, PARTNER, TIME, VX, Floats, World, X
+from harness.motion.predictive.state import Floats, World
 
 # Fewer spheres than this fit into the cache in any order.
 CROWD = 2048
@@ -40,26 +40,31 @@ def spread(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
 def tidy(world: World) -> None:
     """Put the spheres of a running world in order again; they stand in no cell afterwards."""
     spheres, agenda, cells, lists = world.spheres, world.agenda, world.cells, world.lists
-    rows = spheres.rows
-    count = len(rows)
-    positions = rows[:, X : X + 3] + rows[:, VX : VX + 3] * (world.tally.clock[NOW] - rows[:, TIME, None])
-    order = along_curve(positions, world.rules.half_box)
+    count = len(spheres.motions)
+    order = along_curve(positions_at(world, float(world.tally.clock["now"][0])), world.rules.half_box)
     moved_to = np.empty(count, dtype=np.int64)
     moved_to[order] = np.arange(count)
     leaves = agenda.times[len(agenda.times) // 2 :][:count]
-    for array in (rows, spheres.book, spheres.contacts, cells.renewals, leaves):
+    for array in (spheres.motions, spheres.schedule, spheres.contacts, cells.renewals, leaves):
         array[:] = array[order]
-    partners = spheres.marks[:, PARTNER]
+    partners = spheres.schedule["partner"]
     partners[:] = np.where(partners >= 0, moved_to[partners], -1)
     if len(lists.members):
         lists.anchors[:] = lists.anchors[order]
-        lists.members[:, 0] = lists.members[order, 0]
-        lists.members[:, 1:] = moved_to[np.minimum(lists.members[order, 1:], count - 1)]
+        lists.members[:] = lists.members[order]
+        lists.members["who"] = moved_to[np.minimum(lists.members["who"], count - 1)]
     cells.heads[:] = count
+
+
+def positions_at(world: World, now: float) -> Floats:
+    """(n, 3) positions at a time counted from the base, by internal number, m."""
+    motions = world.spheres.motions
+    moved: Floats = motions["position"] + motions["velocity"] * (now - motions["time"][:, None])
+    return moved
 
 
 def labelled(world: World, values: Floats) -> Floats:
     """Values by internal number, by label instead."""
     out = np.empty_like(values)
-    out[world.spheres.marks[:, LABEL]] = values
+    out[world.spheres.schedule["label"]] = values
     return out

@@ -3,45 +3,40 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from harness.errors import InputError
 from harness.motion.predictive.cells import build, size_classes
 from harness.motion.predictive.order import CROWD, along_curve
 from harness.motion.predictive.state import (
-    CAPACITY,
+    CANDIDATES,
     CELLS,
+    CLOCK,
     COUNTS,
     ELASTIC,
+    EVENT,
     FRESH,
-    GRID,
-    KIND,
-    LABEL,
     LISTS,
-    MARK,
-    MASS,
+    MOTION,
+    NEIGHBOURS,
     NONE,
-    PAIR_TIME,
-    PARTNER,
-    RADIUS,
+    ONSET,
     REFLECT,
+    SCHEDULE,
+    SUM,
     SUMS,
-    TOUCHED,
-    VX,
     Agenda,
     Floats,
-    Journal,
     Lists,
+    Records,
     Rules,
     Scratch,
     Spheres,
     Tally,
     World,
-    X,
-    aligned_rows,
+    aligned,
 )
 
 RESPONSES = {"none": NONE, "reflect": REFLECT, "elastic": ELASTIC}
@@ -130,19 +125,18 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
     """Memory for a run; no sphere stands in a cell yet, and each one's first look is its next event."""
     n = len(start)
     order = along_curve(start.positions, start.half_box)
-    rows = aligned_rows(n)
-    rows[:, X : X + 3] = start.positions[order]
-    rows[:, VX : VX + 3] = start.velocities[order]
-    rows[:, RADIUS] = start.radii[order]
-    book = aligned_rows(n)
-    book[:, PAIR_TIME] = np.inf
-    book[:, TOUCHED] = -np.inf
-    book[:, MASS] = start.masses[order]
-    marks = book.view(np.int32)
-    marks[:, PARTNER] = -1
-    marks[:, KIND] = FRESH
-    marks[:, LABEL] = order
-    marks[:, GRID] = size_classes(start.radii)[order]
+    motions = aligned(n, MOTION)
+    motions["position"] = start.positions[order]
+    motions["velocity"] = start.velocities[order]
+    motions["radius"] = start.radii[order]
+    schedule = aligned(n, SCHEDULE)
+    schedule["pair_time"] = np.inf
+    schedule["last_hit"] = -np.inf
+    schedule["mass"] = start.masses[order]
+    schedule["partner"] = -1
+    schedule["kind"] = FRESH
+    schedule["label"] = order
+    schedule["size_class"] = size_classes(start.radii)[order]
     answer = RESPONSES[response]
     method = SEARCHES[search]
     mean = float(start.radii.mean()) if n else 1.0
@@ -166,19 +160,14 @@ def prepare(start: Start, response: str, restitution: float, record: bool, searc
         tidying=TIDYING if n >= CROWD else 0,
     )
     return World(
-        spheres=Spheres(
-            rows=rows,
-            book=book,
-            marks=marks,
-            contacts=np.full(n, -np.inf),
-        ),
+        spheres=Spheres(motions, schedule, contacts=np.full(n, -np.inf)),
         agenda=agenda(n),
         cells=build(start.half_box, start.radii, skin),
-        lists=lists(rows, method),
+        lists=lists(motions, method),
         rules=rules,
-        tally=Tally(counts=np.zeros(COUNTS, dtype=np.int64), sums=np.zeros(2 * SUMS), clock=clock()),
-        journal=journal(CHUNK if record else 0),
-        scratch=Scratch(candidates=np.zeros(n + 2, dtype=np.uint32), lanes=np.zeros(8 * 64)),
+        tally=tally(),
+        journal=np.zeros(CHUNK if record else 0, dtype=EVENT),
+        scratch=Scratch(found=np.zeros(n + 2, dtype=np.uint32), lanes=aligned(1, CANDIDATES)),
     )
 
 
@@ -196,26 +185,20 @@ def agenda(n: int) -> Agenda:
     )
 
 
-def lists(rows: Floats, method: int) -> Lists:
+def lists(motions: Records, method: int) -> Lists:
     """Empty neighbour lists, anchored where the spheres are, or none at all."""
-    n = len(rows) if method == LISTS else 0
-    return Lists(
-        anchors=rows[:n, X : X + 3].copy(),
-        members=aligned_rows(n, CAPACITY // 2).view(np.uint32),
+    n = len(motions) if method == LISTS else 0
+    return Lists(anchors=motions["position"][:n].copy(), members=aligned(n, NEIGHBOURS))
+
+
+def tally() -> Tally:
+    """Nothing has happened, at time zero."""
+    onset = np.zeros(1, dtype=ONSET)
+    onset["time"] = -np.inf
+    return Tally(
+        counts=np.zeros(1, dtype=COUNTS),
+        sums=np.zeros(1, dtype=SUMS),
+        walls=np.zeros(6, dtype=SUM),
+        clock=np.zeros(1, dtype=CLOCK),
+        onset=onset,
     )
-
-
-def journal(size: int) -> Journal:
-    """Room for `size` events."""
-
-    def integers(kind: type[np.signedinteger]) -> NDArray[Any]:
-        return np.zeros(size, dtype=kind)
-
-    return Journal(np.zeros(size), integers(np.int8), integers(np.int32), integers(np.int32), integers(np.int8))
-
-
-def clock() -> Floats:
-    """Time zero, no onset seen."""
-    hands = np.zeros(4)
-    hands[MARK] = -np.inf
-    return hands

@@ -10,38 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from harness.errors import InputError
 from harness.motion.predictive import cells
 from harness.motion.predictive.flight import CROWDED, FULL, SPENT, UNTIDY, fly, populate
-from harness.motion.predictive.order import labelled, tidy
+from harness.motion.predictive.order import labelled, positions_at, tidy
 from harness.motion.predictive.preparation import RESPONSES, SEARCHES, check, choose_search, lists, prepare
-from harness.motion.predictive.state import (
-    BOX_HITS,
-    CELLS,
-    CROSSINGS,
-    EPOCH,
-    EPOCH_REST,
-    FACES,
-    FRESH,
-    GUARDED,
-    KIND,
-    LOST_ENERGY,
-    LOST_ENERGY_TIME,
-    NOW,
-    PAIR_HITS,
-    PAIR_TESTS,
-    PAIR_VIRIAL,
-    PREDICTIONS,
-    RECORDED,
-    RENEWALS,
-    STALE,
-    STALLED,
-    TIME,
-    VX,
-    WALL_VIRIAL,
-    Floats,
-    X,
-)
+from harness.motion.predictive.state import CELLS, EVENT, FRESH, PAIR_EVENT, WALL_EVENT, Floats
 
-EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
-PAIR_EVENT, WALL_EVENT = 0, 1
+__all__ = ["EVENT", "PAIR_EVENT", "WALL_EVENT", "Simulation", "warm_up"]
+
+# Counts that are only of use inside, or to bodies of other shapes.
+INTERNAL = ("narrow_tests", "box_tests", "advancement_steps", "rebasings", "since_rebasing", "recorded")
 
 
 class Simulation:
@@ -94,8 +70,7 @@ class Simulation:
 
     def advance(self, until: float, max_events: int | None = None) -> bool:
         """Fly to `until` (s); what is due at that very time still happens. False if `max_events` hits came first."""
-        counts = self._world.tally.counts
-        budget = 2**62 if max_events is None else int(counts[PAIR_HITS] + counts[BOX_HITS]) + max_events
+        budget = 2**62 if max_events is None else self.counters["events"] + max_events
         while (reason := self._fly(float(until), budget)) in (FULL, CROWDED, UNTIDY):
             if reason == FULL:
                 self._chunks.append(self._drain())
@@ -116,11 +91,9 @@ class Simulation:
             raise ValueError(f"t = {time!r} s is past: the last event was at {self._last_event_time!r} s")
         if time > self.time:
             self.advance(time)
-        clock = self._world.tally.clock
-        rows = self._world.spheres.rows
-        now = (time - clock[EPOCH]) - clock[EPOCH_REST]
-        moved: Floats = rows[:, X : X + 3] + rows[:, VX : VX + 3] * (now - rows[:, TIME, None])
-        return labelled(self._world, moved)
+        clock = self._world.tally.clock[0]
+        now = float((time - clock["epoch"]) - clock["epoch_rest"])
+        return labelled(self._world, positions_at(self._world, now))
 
     @property
     def positions(self) -> Floats:
@@ -130,7 +103,7 @@ class Simulation:
     @property
     def velocities(self) -> Floats:
         """(n, 3) velocities at `time`, m/s."""
-        return labelled(self._world, self._world.spheres.rows[:, VX : VX + 3])
+        return labelled(self._world, self._world.spheres.motions["velocity"])
 
     # -- events ------------------------------------------------------------------------------------------------------
 
@@ -151,18 +124,9 @@ class Simulation:
     @property
     def counters(self) -> dict[str, int]:
         """How often what happened; `events` are pair and box hits only."""
-        counts = self._world.tally.counts
-        return {
-            "events": int(counts[PAIR_HITS] + counts[BOX_HITS]),
-            "pair_hits": int(counts[PAIR_HITS]),
-            "box_hits": int(counts[BOX_HITS]),
-            "predictions": int(counts[PREDICTIONS]),
-            "pair_tests": int(counts[PAIR_TESTS]),
-            "stale_events": int(counts[STALE]),
-            "cell_crossings": int(counts[CROSSINGS]),
-            "list_renewals": int(counts[RENEWALS]),
-            "guarded_hits": int(counts[GUARDED]),
-            "stalled_events": int(counts[STALLED]),
+        counts = self._world.tally.counts[0]
+        return {"events": int(counts["pair_hits"] + counts["box_hits"])} | {
+            name: int(counts[name]) for name in counts.dtype.names if name not in INTERNAL
         }
 
     @property
@@ -185,13 +149,13 @@ class Simulation:
     @property
     def wall_impulses(self) -> Floats:
         """(6,) impulses given to x-, x+, y-, y+, z-, z+ since the start, kg m/s."""
-        impulses: Floats = self._world.tally.sums[FACES : FACES + 6].copy()
+        impulses: Floats = self._world.tally.walls["total"].copy()
         return impulses
 
     @property
     def pair_impulses(self) -> float:
         """Sum over pair hits of |impulse| times the distance of centres, kg m^2/s (its likeness for 'reflect')."""
-        return float(self._world.tally.sums[PAIR_VIRIAL])
+        return self._sum("pair_virial")
 
     @property
     def pressure(self) -> float:
@@ -205,33 +169,33 @@ class Simulation:
     @property
     def virial_residual(self) -> float:
         """Imbalance of d(sum m r.v) = 2 KE T + sum |dp| r12 - sum |dp| a/2, to the second of these terms."""
-        sums = self._world.tally.sums
         change = self._momentum_by_position(self.positions) - self._start_virial
-        action = 2.0 * (self.kinetic_energy * self.time + float(sums[LOST_ENERGY_TIME]))
-        balance = change - action - float(sums[PAIR_VIRIAL]) + float(sums[WALL_VIRIAL])
+        action = 2.0 * (self.kinetic_energy * self.time + self._sum("lost_energy_time"))
+        balance = change - action - self._sum("pair_virial") + self._sum("wall_virial")
         return balance / action if action else 0.0
 
     @property
     def lost_energy(self) -> float:
         """Kinetic energy that inelastic hits took, J."""
-        return float(self._world.tally.sums[LOST_ENERGY])
+        return self._sum("lost_energy")
 
     # -- inside ------------------------------------------------------------------------------------------------------
 
     @property
     def _last_event_time(self) -> float:
-        clock = self._world.tally.clock
-        return float(clock[EPOCH] + (clock[EPOCH_REST] + clock[NOW]))
+        clock = self._world.tally.clock[0]
+        return float(clock["epoch"] + (clock["epoch_rest"] + clock["now"]))
+
+    def _sum(self, name: str) -> float:
+        return float(self._world.tally.sums[name]["total"][0])
 
     def _momentum_by_position(self, positions: Floats) -> float:
         return float((self._start.masses * (positions * self.velocities).sum(axis=1)).sum())
 
     def _drain(self) -> NDArray[np.void]:
-        journal, counts = self._world.journal, self._world.tally.counts
-        chunk = np.empty(int(counts[RECORDED]), dtype=EVENT)
-        for name, column in zip(EVENT.names or (), journal, strict=True):
-            chunk[name] = np.asarray(column)[: len(chunk)]
-        counts[RECORDED] = 0
+        counts = self._world.tally.counts[0]
+        chunk: NDArray[np.void] = self._world.journal[: counts["recorded"]].copy()
+        counts["recorded"] = 0
         return chunk
 
     def _fly(self, until: float, budget: int) -> int:
@@ -240,16 +204,16 @@ class Simulation:
     def _make_room(self) -> None:
         """A crowd too thick for neighbour lists (spheres on top of each other): go on with cells from this moment."""
         world = self._world
-        now = float(world.tally.clock[NOW])
-        rows = world.spheres.rows
-        rows[:, X : X + 3] += rows[:, VX : VX + 3] * (now - rows[:, TIME, None])
-        rows[:, TIME] = now
+        now = float(world.tally.clock["now"][0])
+        motions = world.spheres.motions
+        motions["position"] = positions_at(world, now)
+        motions["time"] = now
         leaves = len(world.agenda.times) // 2
-        world.spheres.marks[:, KIND] = FRESH
+        world.spheres.schedule["kind"] = FRESH
         world.agenda.times[leaves : leaves + len(self)] = now
         self._world = world._replace(
             cells=cells.build(self._start.half_box, self._start.radii, 0.0),
-            lists=lists(rows, CELLS),
+            lists=lists(motions, CELLS),
             rules=world.rules._replace(method=CELLS, skin=0.0),
         )
         populate(self._world, False)

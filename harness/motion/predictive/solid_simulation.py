@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from harness.motion.predictive.simulation import Simulation
-from harness.motion.predictive.solid_flight import SolidWorld, fly_solids
-from harness.motion.predictive.solids import Form, solids
-from harness.motion.predictive.state import ADVANCES, BOX_TESTS, LABEL, NARROW_TESTS
+from harness.motion.predictive.solid_flight import fly_solids
+from harness.motion.predictive.solids import Form, SolidWorld, solids
 from harness.motion.predictive.windows import enlarged, windows
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
+# Counters of the narrow searches.
+SEARCHES = ("narrow_tests", "box_tests", "advancement_steps")
 # Windows that a body has room for at first.
 WINDOWS = 6
 # Hits in no time that make a body stall: fewer than of spheres, as each costs the searches of all that overlap.
@@ -55,7 +56,7 @@ class SolidSimulation(Simulation):
         )
         # The narrow search takes the time, not the memory: no need to keep neighbours together
         self._world = self._world._replace(rules=self._world.rules._replace(tidying=0, burst=BURST[response]))
-        order = self._world.spheres.marks[:, LABEL]
+        order = self._world.spheres.schedule["label"]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
         room = WINDOWS * len(bodies) + 64
         self._solid = SolidWorld(self._world, body, windows(len(bodies), room))
@@ -63,12 +64,8 @@ class SolidSimulation(Simulation):
     @property
     def counters(self) -> dict[str, int]:
         """How often what happened; `narrow_tests` are searches of pairs, each of some steps."""
-        counts = self._world.tally.counts
-        return super().counters | {
-            "narrow_tests": int(counts[NARROW_TESTS]),
-            "box_tests": int(counts[BOX_TESTS]),
-            "advancement_steps": int(counts[ADVANCES]),
-        }
+        counts = self._world.tally.counts[0]
+        return super().counters | {name: int(counts[name]) for name in SEARCHES}
 
     def _fly(self, until: float, budget: int) -> int:
         return fly_solids(self._solid, until, budget)

@@ -14,8 +14,9 @@ import numpy as np
 
 from harness.arrays import Floats, Ints
 from harness.kernel import kernel, step, strict_step
-from harness.motion.predictive.state import EPOCH, EPOCH_REST, TIME, VX, X
-from harness.narrowphase.advancement import Motion
+from harness.motion.predictive.state import Record, Records, World
+from harness.motion.predictive.windows import Windows
+from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import support_map
 from harness.narrowphase.triangle_tree import triangle_tree
@@ -28,6 +29,8 @@ Quaternion = tuple[float, float, float, float]
 
 # 2 pi in twice the digits.
 TURN, TURN_REST = 2.0 * pi, 2.4492935982947064e-16
+# A number in twice the digits, high + low.
+LONG = np.dtype([("high", np.float64), ("low", np.float64)], align=True)
 # Splits a number of 53 bits into two of 26 (Dekker).
 SPLIT = 134217729.0
 
@@ -38,17 +41,17 @@ class Form:
     Parameters
     ----------
     scene : Scene of shape `hull` or `mesh`
+    surface : whether the surface is to be searched where hulls touch; by default where the scene needs it
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, surface: bool | None = None) -> None:
         if scene.mesh is None or scene.shape == "sphere":
             raise ValueError("a sphere has no surface to search")
         mesh, hull = scene.mesh, scene.mesh.hull
-        self.concave = needs_its_surface(scene)
+        self.concave = needs_its_surface(scene) if surface is None else surface
         faces = mesh.faces if self.concave else mesh.faces[:1]
         tree = triangle_tree(mesh.vertices, faces)
         self.shape = MeshShape(support_map(hull.vertices), tree, 0.5)
-        self.inradius = scene.mesh.hull.inradius
 
 
 def needs_its_surface(scene: Scene) -> bool:
@@ -67,11 +70,10 @@ class Solids(NamedTuple):
     ----------
     shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree is a stump
     concave : whether the surface is to be searched where hulls touch
-    inradius : of a sphere around the centre that the hull holds
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
     spins : (n, 3) rad/s, in the world
-    rates : (n, 2) |spin| in twice the digits
+    rates : (n,) of LONG, rad/s, |spin|
     start : (n, 4) orientations at time 0, w x y z
     turns : (n, 4) orientations at the base of time
     tolerance : of the mean size of two bodies: gaps below are contact
@@ -80,15 +82,22 @@ class Solids(NamedTuple):
 
     shape: MeshShape
     concave: bool
-    inradius: float
     sizes: Floats
     reaches: Floats
     spins: Floats
-    rates: Floats
+    rates: Records
     start: Floats
     turns: Floats
     tolerance: float
     scale: float
+
+
+class SolidWorld(NamedTuple):
+    """The spheres around the bodies, the bodies, and their windows."""
+
+    world: World
+    body: Solids
+    windows: Windows
 
 
 def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
@@ -102,20 +111,20 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     tolerance : as in `Solids`
     """
     sizes, spins, start = bodies.sizes[order], bodies.spins[order], bodies.quaternions[order]
-    reaches, rates = np.empty(len(sizes)), np.empty((len(sizes), 2))
+    reaches, rates = np.empty(len(sizes)), np.empty(len(sizes), dtype=LONG)
     measure(form.shape.hull.vertices, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
     turns = start.copy()
-    return Solids(form.shape, form.concave, form.inradius, sizes, reaches, spins, rates, start, turns, tolerance, scale)
+    return Solids(form.shape, form.concave, sizes, reaches, spins, rates, start, turns, tolerance, scale)
 
 
 @kernel
-def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reaches: Floats, rates: Floats) -> None:
+def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reaches: Floats, rates: Records) -> None:
     """Fill in reaches and rates."""
     for k in range(len(sizes)):
         x, y, z = spins[k]
         high, low = long_norm(x, y, z)
-        rates[k, 0], rates[k, 1] = high, low
+        rates[k].high, rates[k].low = high, low
         reaches[k] = 0.5 * sizes[k]
         if high > 0.0:
             # the axis stands still in the body too
@@ -132,21 +141,22 @@ def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reach
 
 
 @step
-def motion_of(body: Solids, rows: Floats, k: int, now: float) -> Motion:
+def motion_of(body: Solids, motions: Records, k: int, now: float) -> Motion:
     """Body k in free flight from the present on, in units."""
-    flown = now - rows[k, TIME]
+    position, velocity = motions[k].position, motions[k].velocity
+    flown = now - motions[k].time
     scale = body.scale
     return Motion(
         (
-            scale * (rows[k, X] + rows[k, VX] * flown),
-            scale * (rows[k, X + 1] + rows[k, VX + 1] * flown),
-            scale * (rows[k, X + 2] + rows[k, VX + 2] * flown),
+            scale * (position[0] + velocity[0] * flown),
+            scale * (position[1] + velocity[1] * flown),
+            scale * (position[2] + velocity[2] * flown),
         ),
-        (scale * rows[k, VX], scale * rows[k, VX + 1], scale * rows[k, VX + 2]),
+        (scale * velocity[0], scale * velocity[1], scale * velocity[2]),
         turned_by(
             (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2]),
-            body.rates[k, 0],
-            body.rates[k, 0] * now,
+            body.rates[k].high,
+            body.rates[k].high * now,
             (body.turns[k, 0], body.turns[k, 1], body.turns[k, 2], body.turns[k, 3]),
         ),
         (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2]),
@@ -156,13 +166,14 @@ def motion_of(body: Solids, rows: Floats, k: int, now: float) -> Motion:
 
 
 @step
-def turn_to_base(body: Solids, clock: Floats) -> None:
+def turn_to_base(body: Solids, clock: Record) -> None:
     """Orientations at a new base of time, from those at time 0."""
     for k in range(body.sizes.size):
-        angle = long_angle(body.rates[k, 0], body.rates[k, 1], clock[EPOCH], clock[EPOCH_REST])
+        rate = body.rates[k]
+        angle = long_angle(rate.high, rate.low, clock.epoch, clock.epoch_rest)
         spin = (body.spins[k, 0], body.spins[k, 1], body.spins[k, 2])
         start = (body.start[k, 0], body.start[k, 1], body.start[k, 2], body.start[k, 3])
-        w, x, y, z = turned_by(spin, body.rates[k, 0], angle, start)
+        w, x, y, z = turned_by(spin, rate.high, angle, start)
         body.turns[k, 0], body.turns[k, 1], body.turns[k, 2], body.turns[k, 3] = w, x, y, z
 
 

@@ -1,11 +1,11 @@
-"""What the scheduler knows, as arrays: one row a sphere, one scheduled event a sphere, the cells, the tallies.
+"""What the scheduler knows, as arrays of records: one motion and one scheduled event a sphere, the cells, the tallies.
 
 The named tuples are handed to the compiled loop whole; everything in them changes in place.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +14,116 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Indices = NDArray[np.uint32]  # unsigned: the compiled code then need not ask whether an index counts from the end
 Longs = NDArray[np.int64]
-Bytes = NDArray[np.int8]
+Records = Any  # an array of one of the types below; mypy knows no fields
+Record = Any  # one of its elements
 
-# Columns of a sphere's row: 64 bytes, one cache line. Position holds at the sphere's own time.
-X, TIME, VX, RADIUS = 0, 3, 4, 7
-ROW = 8
+LINE = 64  # bytes of a cache line
 
-# A sphere's book: 64 bytes more, with what the scheduler knows of it. Three numbers, and ten marks (as 32-bit
-# integers).
-PAIR_TIME, TOUCHED, MASS = 0, 1, 2
-HITS, PARTNER, PARTNER_HITS, KIND, LABEL, BURST, PLACE, GRID = 6, 7, 8, 9, 10, 11, 12, 15
+# A sphere's motion: 64 bytes, one cache line.
+MOTION = np.dtype(
+    [
+        ("position", np.float64, 3),  # m, at the sphere's own time
+        ("time", np.float64),  # s
+        ("velocity", np.float64, 3),  # m/s
+        ("radius", np.float64),  # m
+    ],
+    align=True,
+)
+
+# What the scheduler knows of a sphere: 64 bytes more.
+SCHEDULE = np.dtype(
+    [
+        ("pair_time", np.float64),  # s, of the earliest pair candidate; it outlives crossings
+        ("last_hit", np.float64),  # s
+        ("mass", np.float64),  # kg
+        ("hits", np.int32),  # how often the velocity changed: an event made for another count is stale
+        ("partner", np.int32),  # the pair candidate, -1: none
+        ("partner_hits", np.int32),  # its hits when it was looked at
+        ("kind", np.int32),  # of the scheduled event
+        ("label", np.int32),  # the caller's numbering, which breaks ties
+        ("burst", np.int32),  # hits in no time
+        ("cell", np.int32, 3),  # along x, y, z
+        ("size_class", np.int32),
+    ],
+    align=True,
+)
+
+# A grid of cells, for one size class.
+GRID = np.dtype(
+    [
+        ("shape", np.int64, 3),  # cells along x, y, z
+        ("first", np.int64),  # place of its first cell in `Cells.heads`
+        ("low", np.float64, 3),  # m, where it begins
+        ("side", np.float64, 3),  # m, of a cell
+        ("largest", np.float64),  # m, radius
+        ("margin", np.float64),  # m, how far a sphere flies before it looks at finer grids again
+    ],
+    align=True,
+)
+
+# How often what happened.
+COUNTS = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "pair_hits",
+            "box_hits",
+            "predictions",
+            "pair_tests",
+            "stale_events",
+            "cell_crossings",
+            "list_renewals",
+            "guarded_hits",
+            "stalled_events",
+            "narrow_tests",
+            "box_tests",
+            "advancement_steps",
+            "rebasings",  # of time
+            "since_rebasing",  # events, searches and crossings included
+            "recorded",  # events in the journal
+        )
+    ],
+    align=True,
+)
+
+# A compensated sum.
+SUM = np.dtype([("total", np.float64), ("rest", np.float64)], align=True)
+
+# Sums over all hits.
+SUMS = np.dtype(
+    [
+        ("pair_virial", SUM),  # kg m^2/s
+        ("wall_virial", SUM),  # kg m^2/s
+        ("lost_energy", SUM),  # J
+        ("lost_energy_time", SUM),  # J s
+    ],
+    align=True,
+)
+
+# Absolute time is (epoch + epoch_rest) + now.
+CLOCK = np.dtype([("epoch", np.float64), ("epoch_rest", np.float64), ("now", np.float64)], align=True)
+
+# The onset that was noted last (response none).
+ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align=True)
+
+# A recorded event: j is -1 at a wall, wall is -1 between a pair.
+EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
+PAIR_EVENT, WALL_EVENT = 0, 1
+
+# Candidates solved at a time, as columns. Their number is a constant, so that the compiler sees that the columns do not
+# overlap.
+LANES = 64
+CANDIDATES = np.dtype(
+    [
+        (name, np.float64, LANES)
+        for name in ("gap_x", "gap_y", "gap_z", "velocity_x", "velocity_y", "velocity_z", "reach", "due")
+    ],
+    align=True,
+)
+
+# Who is near a sphere: a list of one cache line or, if it is long, two.
+CAPACITY = 31
+NEIGHBOURS = np.dtype([("count", np.uint32), ("who", np.uint32, CAPACITY)], align=True)
 
 # What a sphere's scheduled event is. Walls and crossings add 2 * axis + (1 if moving up the axis). A search is for the
 # contact of a shape inside its bounding sphere.
@@ -33,35 +133,17 @@ SEARCH, FRESH, PAIR, WALL, CROSSING, RENEWAL, NOTHING = -1, 0, 1, 2, 8, 14, 15
 CELLS, LISTS = 0, 1
 NONE, REFLECT, ELASTIC = 0, 1, 2
 
-# Entries of `Tally.counts`.
-PAIR_HITS, BOX_HITS, PREDICTIONS, PAIR_TESTS, CROSSINGS, RENEWALS, GUARDED, STALLED, STALE, POPS, RECORDED = range(11)
-MARK_I, MARK_J, REBASINGS, NARROW_TESTS, BOX_TESTS, ADVANCES = range(11, 17)
-COUNTS = 17
-# Entries of `Tally.sums`; each has its compensation SUMS places further on.
-PAIR_VIRIAL, WALL_VIRIAL, LOST_ENERGY, LOST_ENERGY_TIME, FACES = 0, 1, 2, 3, 4
-SUMS = 10
-# Entries of `Tally.clock`: absolute time = (EPOCH + EPOCH_REST) + NOW; MARK is the time of the last onset.
-EPOCH, EPOCH_REST, NOW, MARK = range(4)
-
-# Places of a neighbour list, one for its length; a crowd larger than this goes back to cells. Most lists fill one
-# cache line.
-CAPACITY = 32
-
 
 class Spheres(NamedTuple):
-    """n spheres: flight, book and marks.
+    """n spheres.
 
-    rows : (n, 8) x, y, z, own time, vx, vy, vz, radius
-    book : (n, 8) time of the earliest pair candidate (it outlives crossings), time of the last hit, mass, and marks
-    marks : (n, 16) the book's memory as integers: hits (how often the velocity changed: an event made for another
-        count is stale), the candidate, its hits when it was looked at, kind of the scheduled event, label (the
-        caller's numbering, which breaks ties), hits in no time, cell ix, iy, iz, grid
+    motions : (n,) of MOTION
+    schedule : (n,) of SCHEDULE
     contacts : (n,) time of the last pair hit
     """
 
-    rows: Floats
-    book: Floats
-    marks: Ints
+    motions: Records
+    schedule: Records
     contacts: Floats
 
 
@@ -78,8 +160,7 @@ class Cells(NamedTuple):
 
     heads: Indices  # (cells of all grids,) first sphere, n = empty
     following: Indices  # (n + 1,) the next sphere in the same cell
-    shapes: Longs  # (grids, 4): cells along x, y, z; place of the first in heads
-    frames: Floats  # (grids, 8): origin, cell sides, largest radius, margin
+    grids: Records  # (grids,) of GRID
     renewals: Floats  # (n,) when a sphere has flown its margin and must look at finer grids again
 
 
@@ -87,7 +168,7 @@ class Lists(NamedTuple):
     """Neighbours within touching distance + skin, of spheres that moved at most skin / 2 from their anchors."""
 
     anchors: Floats  # (n, 3)
-    members: Indices  # (n, CAPACITY): how many, then who
+    members: Records  # (n,) of NEIGHBOURS
 
 
 class Rules(NamedTuple):
@@ -110,28 +191,20 @@ class Rules(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """Counters (COUNTS,), compensated sums (20,) and the clock (4,)."""
+    """What has happened so far. All but the walls have one record."""
 
-    counts: Longs
-    sums: Floats
-    clock: Floats
-
-
-class Journal(NamedTuple):
-    """A chunk of recorded events; no room means no recording."""
-
-    times: Floats
-    kinds: Bytes
-    first: Ints
-    second: Ints
-    walls: Bytes
+    counts: Records  # (1,) of COUNTS
+    sums: Records  # (1,) of SUMS
+    walls: Records  # (6,) of SUM, kg m/s: impulses given to x-, x+, y-, y+, z-, z+
+    clock: Records  # (1,) of CLOCK
+    onset: Records  # (1,) of ONSET
 
 
 class Scratch(NamedTuple):
-    """Working space of one search: candidates (n + 1,), and their lanes."""
+    """Working space of one search."""
 
-    candidates: Indices
-    lanes: Floats
+    found: Indices  # (n + 2,) candidates
+    lanes: Records  # (1,) of CANDIDATES
 
 
 class World(NamedTuple):
@@ -143,12 +216,12 @@ class World(NamedTuple):
     lists: Lists
     rules: Rules
     tally: Tally
-    journal: Journal
+    journal: Records  # a chunk of recorded EVENTs; no room means no recording
     scratch: Scratch
 
 
-def aligned_rows(count: int, row: int = ROW) -> Floats:
-    """(count, row) zeros that start on a cache line."""
-    raw = np.zeros(count * row + ROW)
-    skip = (-raw.ctypes.data // 8) % ROW
-    return raw[skip : skip + count * row].reshape(count, row)
+def aligned(count: int, kind: np.dtype[np.void]) -> Records:
+    """(count,) zeros of a type of whole cache lines, that start on a cache line."""
+    raw = np.zeros(count * kind.itemsize + LINE, dtype=np.uint8)
+    skip = -raw.ctypes.data % LINE
+    return raw[skip : skip + count * kind.itemsize].view(kind)

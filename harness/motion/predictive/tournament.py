@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from harness.kernel import step
-from harness.motion.predictive.state import KIND, LABEL, NOTHING, PAIR, PARTNER, WALL, Agenda, Ints
+from harness.motion.predictive.state import NOTHING, PAIR, WALL, Agenda, Records
 
 NEVER = int(np.array(np.inf).view(np.int64))
 
 
 @step
-def replay(agenda: Agenda, marks: Ints, k: int) -> None:
+def replay(agenda: Agenda, schedule: Records, k: int) -> None:
     """Let sphere k's event, already written to its leaf, find its way up."""
     order = agenda.order
     winners = agenda.winners
@@ -28,7 +28,7 @@ def replay(agenda: Agenda, marks: Ints, k: int) -> None:
         # half the time.
         rival_time = order[node ^ 1]
         rival = winners[node ^ 1]
-        if rival_time == time and time < NEVER and precedes(marks, rival, who):
+        if rival_time == time and time < NEVER and precedes(schedule, rival, who):
             who = rival
         earlier = (rival_time - time) >> 63
         time += (rival_time - time) & earlier
@@ -39,14 +39,14 @@ def replay(agenda: Agenda, marks: Ints, k: int) -> None:
 
 
 @step
-def rebuild(agenda: Agenda, marks: Ints) -> None:
+def rebuild(agenda: Agenda, schedule: Records) -> None:
     """Play all matches."""
     for node in range(agenda.times.size // 2 - 1, 0, -1):
-        match(agenda, marks, node)
+        match(agenda, schedule, node)
 
 
 @step
-def match(agenda: Agenda, marks: Ints, node: int) -> None:
+def match(agenda: Agenda, schedule: Records, node: int) -> None:
     """The earlier event of a node's two children stands at the node."""
     order = agenda.order
     winners = agenda.winners
@@ -56,16 +56,16 @@ def match(agenda: Agenda, marks: Ints, node: int) -> None:
     other = winners[2 * node + 1]
     second = right < left
     if left == right and left < NEVER:
-        second = precedes(marks, other, one)
+        second = precedes(schedule, other, one)
     order[node] = right if second else left
     winners[node] = other if second else one
 
 
 @step
-def precedes(marks: Ints, a: int, b: int) -> bool:
+def precedes(schedule: Records, a: int, b: int) -> bool:
     """Whether sphere a's event comes before sphere b's of the same time: by kind, then i, then j."""
-    kind_a, first_a, second_a = key(marks, a)
-    kind_b, first_b, second_b = key(marks, b)
+    kind_a, first_a, second_a = key(schedule, a)
+    kind_b, first_b, second_b = key(schedule, b)
     if kind_a != kind_b:
         return kind_a < kind_b
     if first_a != first_b:
@@ -74,12 +74,12 @@ def precedes(marks: Ints, a: int, b: int) -> bool:
 
 
 @step
-def key(marks: Ints, k: int) -> tuple[int, int, int]:
+def key(schedule: Records, k: int) -> tuple[int, int, int]:
     """What breaks ties: kind (fresh, pair, wall, the rest), lower and higher label, or label and face."""
-    kind = marks[k, KIND]
-    label = marks[k, LABEL]
+    kind = schedule[k].kind
+    label = schedule[k].label
     if kind == PAIR:
-        partner = marks[marks[k, PARTNER], LABEL]
+        partner = schedule[schedule[k].partner].label
         return PAIR, min(label, partner), max(label, partner)
     if kind < PAIR:
         return kind, label, 0

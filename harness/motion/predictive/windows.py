@@ -14,20 +14,35 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.kernel import step
-from harness.motion.predictive.state import HITS, LABEL, Bytes, Floats, Ints, Longs
+from harness.motion.predictive.state import Ints, Record, Records
 
 # What a window, or a body's way to a wall, waits for: a search for the contact of bodies that are apart; a closer one,
 # where their hulls are near each other; a search for the contact of bodies whose spheres overlap when they are first
 # looked at, so that they may be touching; a search for the end of a contact; that end; the hit that a search has found.
 APART, NEAR, UNSURE, TOUCHING, PARTING, DUE = range(6)
 
-# Columns of `marks`.
-OTHER, OTHER_HITS, PHASE, NEXT = range(4)
-# Entries of `free`: the first of the free windows, and how many there are.
-FIRST, COUNT = 0, 1
-# Warm starts kept for a search: four of the hulls' and four of the surfaces'.
-SEEDS = 8
 NOBODY = -1
+
+WINDOW = np.dtype(
+    [
+        ("time", np.float64),  # s, when the search or the hit is due
+        ("end", np.float64),  # s, after which the pair is silent
+        ("other", np.int32),  # the other body
+        ("other_hits", np.int32),  # its hits when the window was opened
+        ("phase", np.int32),
+        ("next", np.int32),  # the next window of the same body, or the next free one
+    ],
+    align=True,
+)
+
+# Where the last search of a pair ended; -1: nowhere yet.
+WARM_START = np.dtype([("hulls", np.int64, 4), ("surfaces", np.int64, 2)], align=True)
+
+# A body's way to the wall ahead of it along an axis: s, when a search or a hit is due there.
+WALL_WINDOW = np.dtype([("time", np.float64), ("phase", np.int64)], align=True)
+
+# The windows that are not in use, as a list.
+FREE = np.dtype([("first", np.int64), ("count", np.int64)], align=True)
 
 
 class Windows(NamedTuple):
@@ -37,101 +52,104 @@ class Windows(NamedTuple):
     ----------
     heads : (n,) first window of each body
     held : (n,) the window that a body's scheduled event is about; -1 - axis for a way to a wall
-    times : (m,) s, when the search or the hit is due
-    ends : (m,) s, after which the pair is silent
-    marks : (m, 4) int32: the other body, its hits, the phase, the next window
-    seeds : (m, SEEDS) where the last search of the pair ended
-    free : (2,) the first free window, and how many
-    wall_times : (n, 3) s, when a search or a hit is due at the wall ahead along an axis
-    wall_phases : (n, 3)
+    pool : (m,) of WINDOW
+    starts : (m,) of WARM_START, one a window
+    free : (1,) of FREE
+    walls : (n, 3) of WALL_WINDOW
     """
 
     heads: Ints
     held: Ints
-    times: Floats
-    ends: Floats
-    marks: Ints
-    seeds: Longs
-    free: Longs
-    wall_times: Floats
-    wall_phases: Bytes
+    pool: Records
+    starts: Records
+    free: Records
+    walls: Records
 
 
 def windows(bodies: int, room: int) -> Windows:
     """No windows yet, room for so many."""
-    marks = np.zeros((room, 4), dtype=np.int32)
-    marks[:, NEXT] = np.append(np.arange(1, room), NOBODY)
+    pool = np.zeros(room, dtype=WINDOW)
+    pool["next"] = np.append(np.arange(1, room), NOBODY)
+    starts = np.zeros(room, dtype=WARM_START)
+    starts["hulls"], starts["surfaces"] = -1, -1
+    free = np.zeros(1, dtype=FREE)
+    free["count"] = room
+    walls = np.zeros((bodies, 3), dtype=WALL_WINDOW)
+    walls["time"] = np.inf
     return Windows(
         heads=np.full(bodies, NOBODY, dtype=np.int32),
         held=np.full(bodies, NOBODY, dtype=np.int32),
-        times=np.zeros(room),
-        ends=np.zeros(room),
-        marks=marks,
-        seeds=np.full((room, SEEDS), -1, dtype=np.int64),
-        free=np.array([0, room]),
-        wall_times=np.full((bodies, 3), np.inf),
-        wall_phases=np.zeros((bodies, 3), dtype=np.int8),
+        pool=pool,
+        starts=starts,
+        free=free,
+        walls=walls,
     )
 
 
 def enlarged(full: Windows) -> Windows:
     """The same windows and as many free ones again."""
-    room = len(full.times)
+    room = len(full.pool)
     larger = windows(len(full.heads), 2 * room)
-    for name in ("times", "ends", "marks", "seeds"):
-        getattr(larger, name)[:room] = getattr(full, name)
-    larger.marks[-1, NEXT] = full.free[FIRST]
-    larger.free[:] = room, full.free[COUNT] + room
-    return larger._replace(heads=full.heads, held=full.held, wall_times=full.wall_times, wall_phases=full.wall_phases)
+    larger.pool[:room] = full.pool
+    larger.starts[:room] = full.starts
+    larger.pool["next"][-1] = full.free["first"][0]
+    larger.free["first"] = room
+    larger.free["count"] = full.free["count"] + room
+    return larger._replace(heads=full.heads, held=full.held, walls=full.walls)
 
 
 @step
 def find(windows: Windows, first: int, p: int) -> int:
     """The window on body p in a list that begins with `first`; -1 if there is none."""
     w = first
-    while w >= 0 and windows.marks[w, OTHER] != p:
-        w = windows.marks[w, NEXT]
+    while w >= 0 and windows.pool[w].other != p:
+        w = windows.pool[w].next
     return w
 
 
 @step
-def holds(windows: Windows, body_marks: Ints, w: int) -> bool:
+def holds(windows: Windows, schedule: Records, w: int) -> bool:
     """Whether a window is there and stands: the other body still flies as it did."""
-    return w >= 0 and body_marks[windows.marks[w, OTHER], HITS] == windows.marks[w, OTHER_HITS]
+    return w >= 0 and schedule[windows.pool[w].other].hits == windows.pool[w].other_hits
 
 
 @step
-def add(windows: Windows, body_marks: Ints, k: int, p: int, time: float, end: float, phase: int) -> int:
-    """A new window of body k on body p."""
-    w = int(windows.free[FIRST])
-    windows.free[FIRST] = windows.marks[w, NEXT]
-    windows.free[COUNT] -= 1
-    windows.times[w] = time
-    windows.ends[w] = end
-    windows.marks[w, OTHER] = p
-    windows.marks[w, OTHER_HITS] = body_marks[p, HITS]
-    windows.marks[w, PHASE] = phase
-    windows.marks[w, NEXT] = windows.heads[k]
+def add(windows: Windows, schedule: Records, k: int, p: int) -> int:
+    """A new window of body k on body p, whose times and phase the caller sets."""
+    w = int(windows.free[0].first)
+    new = windows.pool[w]
+    windows.free[0].first = new.next
+    windows.free[0].count -= 1
+    new.other = p
+    new.other_hits = schedule[p].hits
+    new.next = windows.heads[k]
     windows.heads[k] = w
-    for seed in range(SEEDS):
-        windows.seeds[w, seed] = -1
+    windows.starts[w].hulls[:] = -1
+    windows.starts[w].surfaces[:] = -1
     return w
 
 
 @step
 def remove(windows: Windows, k: int, w: int) -> None:
     """Body k closes one of its windows."""
-    following = windows.marks[w, NEXT]
+    pool = windows.pool
+    following = pool[w].next
     if windows.heads[k] == w:
         windows.heads[k] = following
     else:
         before = windows.heads[k]
-        while windows.marks[before, NEXT] != w:
-            before = windows.marks[before, NEXT]
-        windows.marks[before, NEXT] = following
-    windows.marks[w, NEXT] = windows.free[FIRST]
-    windows.free[FIRST] = w
-    windows.free[COUNT] += 1
+        while pool[before].next != w:
+            before = pool[before].next
+        pool[before].next = following
+    release(windows, w)
+
+
+@step
+def release(windows: Windows, w: int) -> None:
+    """A window that is in no list any more is free."""
+    windows.pool[w].next = windows.free[0].first
+    windows.free[0].first = w
+    windows.free[0].count += 1
 
 
 @step
@@ -139,39 +157,34 @@ def close_all(windows: Windows, first: int) -> None:
     """Close the windows of a list."""
     w = first
     while w >= 0:
-        following = windows.marks[w, NEXT]
-        windows.marks[w, NEXT] = windows.free[FIRST]
-        windows.free[FIRST] = w
-        windows.free[COUNT] += 1
+        following = windows.pool[w].next
+        release(windows, w)
         w = following
 
 
 @step
-def next_due(windows: Windows, body_marks: Ints, k: int) -> tuple[float, int]:
-    """When body k's next window is due, and which; ties go to searches, and then to the lower label.
-
-    (inf, -1) if it has none.
-    """
+def next_due(windows: Windows, schedule: Records, k: int) -> int:
+    """Body k's window that is due next, -1 if it has none; ties go to searches, and then to the lower label."""
     best = inf
     which = -1
     w = windows.heads[k]
     while w >= 0:
-        time = windows.times[w]
-        if time < best or (time == best and which >= 0 and sooner(windows, body_marks, w, which)):
+        window = windows.pool[w]
+        time = window.time
+        if time < best or (time == best and which >= 0 and sooner(window, windows.pool[which], schedule)):
             best = time
             which = w
-        w = windows.marks[w, NEXT]
-    return best, which
+        w = window.next
+    return which
 
 
 @step
-def sooner(windows: Windows, body_marks: Ints, w: int, than: int) -> bool:
+def sooner(window: Record, than: Record, schedule: Records) -> bool:
     """Whether a window comes before another of the same body and time."""
-    due, than_due = windows.marks[w, PHASE] == DUE, windows.marks[than, PHASE] == DUE
+    due, than_due = window.phase == DUE, than.phase == DUE
     if due != than_due:
         return bool(than_due)
-    label, than_label = body_marks[windows.marks[w, OTHER], LABEL], body_marks[windows.marks[than, OTHER], LABEL]
-    return bool(label < than_label)
+    return bool(schedule[window.other].label < schedule[than.other].label)
 
 
 @step
@@ -180,8 +193,8 @@ def shift(windows: Windows, base: float) -> None:
     for k in range(windows.heads.size):
         w = windows.heads[k]
         while w >= 0:
-            windows.times[w] -= base
-            windows.ends[w] -= base
-            w = windows.marks[w, NEXT]
+            windows.pool[w].time -= base
+            windows.pool[w].end -= base
+            w = windows.pool[w].next
         for axis in range(3):
-            windows.wall_times[k, axis] -= base
+            windows.walls[k, axis].time -= base

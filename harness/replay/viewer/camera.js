@@ -1,4 +1,4 @@
-// A camera that looks at the middle of the box from wherever it is dragged to.
+// A camera that turns about the middle of the box.
 
 import { cross, lookAt, multiply, perspective, unit } from "./matrix.js";
 
@@ -37,7 +37,7 @@ export class Camera {
     const near = Math.max(distance - 1.2 * radius, distance * 0.01, radius * 0.005);
     const projection = perspective(FIELD, aspect, near, distance + 1.5 * radius);
     const matrix = multiply(projection, lookAt(eye, right, up, forward));
-    return { matrix, eye, right, up, forward, distance, radius, aspect, spread: Math.tan(FIELD / 2) };
+    return { matrix, eye, right, up, forward, distance, radius, aspect, tanHalfField: Math.tan(FIELD / 2) };
   }
 }
 
@@ -59,7 +59,7 @@ function middle(half, forward, axis, distance) {
 /** The nearest body under a point of the picture, given from -1 to 1 each way; -1 where there is none. */
 export function bodyUnder(view, x, y, positions, sizes) {
   const ray = unit([0, 1, 2].map((axis) =>
-    view.forward[axis] + view.right[axis] * x * view.spread * view.aspect + view.up[axis] * y * view.spread));
+    view.forward[axis] + view.right[axis] * x * view.tanHalfField * view.aspect + view.up[axis] * y * view.tanHalfField));
   let nearest = Infinity, found = -1;
   for (let body = 0; body < sizes.length; body++) {
     const gap = [0, 1, 2].map((axis) => positions[3 * body + axis] - view.eye[axis]);
@@ -72,8 +72,8 @@ export function bodyUnder(view, x, y, positions, sizes) {
   return found;
 }
 
-/** Lets a pointer, two fingers, a wheel and keys move the camera; a press without a drag is a choice of what is there. */
-export function steer(canvas, camera, moved, chosen) {
+/** Move the camera by pointer, two fingers, wheel and keys; a press without a drag calls `chosen` with its place. */
+export function controlCamera(canvas, camera, moved, chosen) {
   const pointers = new Map();
   let travelled = 0;
   const apart = () => {

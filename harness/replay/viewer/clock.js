@@ -1,7 +1,7 @@
-// The time that is shown: it runs, steps, jumps, and tells whoever looks.
+// The time that is shown: it plays, steps and jumps, and calls back at every change.
 
 export class Clock {
-  /** From 0 to `end` (s), in frames of `step` (s). `changed` is called whenever the time is another. */
+  /** From 0 to `end` (s), in frames of `step` (s). `changed` is called whenever the time changes. */
   constructor(changed) {
     this.changed = changed;
     this.time = 0;
@@ -40,7 +40,7 @@ export class Clock {
     this.seek((on ? near + frames : frames > 0 ? Math.ceil(exact) : Math.floor(exact)) * this.step);
   }
 
-  /** Let the time of the day pass; at the end it stops. */
+  /** Advance by the time since the last call (`now`, ms), times the speed; stop at the end. */
   tick(now) {
     if (!this.playing) return;
     this.time += (Math.min(now - this._last, 250) / 1000) * this.speed;

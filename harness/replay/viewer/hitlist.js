@@ -1,4 +1,4 @@
-// The list of hits: as long as there are hits, but only the rows that can be seen exist. A row jumps to its hit.
+// The list of hits: as tall as all its rows, of which only the visible ones exist. A click on a row jumps to its hit.
 
 const ROW = 30; // px
 

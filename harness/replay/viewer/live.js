@@ -1,10 +1,10 @@
-// The live page: each change of a setting is run at once, shown, and its costs put above those of the runs before.
+// The live page: each change of a setting is run at once and shown, and its costs are added on top of the table.
 
 import { Recording } from "./recording.js";
 
 const KEPT = 8;
 
-export function attend(replay) {
+export function startLivePage(replay) {
   const form = document.getElementById("settings"), outcome = document.getElementById("outcome");
   const rows = document.getElementById("costs").tBodies[0];
   let running = false, again = false, waiting = 0;

@@ -1,6 +1,6 @@
-// Starts the replay of the recording that the page carries, or the page that makes one as it is asked to.
+// Starts the replay of the recording in the page, or the live page, whose recordings come from its server.
 
-import { attend } from "./live.js";
+import { startLivePage } from "./live.js";
 import { Recording } from "./recording.js";
 import { Replay } from "./replay.js";
 
@@ -9,4 +9,4 @@ if (carried) {
   replay.show(new Recording(JSON.parse(carried.textContent)));
   replay.begin();
 }
-if (document.getElementById("settings")) attend(replay);
+if (document.getElementById("settings")) startLivePage(replay);

@@ -1,4 +1,4 @@
-// 4x4 matrices as WebGL wants them, column after column, and the few vectors that a camera needs.
+// 4x4 matrices in WebGL's order, column after column, and the few vector functions that a camera needs.
 
 export function perspective(fov, aspect, near, far) {
   const f = 1 / Math.tan(fov / 2), depth = near - far;
@@ -21,7 +21,7 @@ export function multiply(a, b) {
   return product;
 }
 
-/** Where a point in space comes to lie, in clip space. */
+/** A point in space, in clip coordinates. */
 export function project(matrix, x, y, z) {
   const at = (row) => matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row];
   return [at(0), at(1), at(2), at(3)];

@@ -29,7 +29,7 @@ export class Recording {
     }
   }
 
-  /** Seconds from frame to frame, or what stands for it where nothing was computed in frames. */
+  /** Seconds from frame to frame; 1/60 where nothing was computed in frames. */
   get step() {
     return this.dt || 1 / 60;
   }
@@ -99,7 +99,7 @@ export class Recording {
     return { count, next: count < hits.length ? hits[count] : -1 };
   }
 
-  /** The time of the next (1) or previous (-1) moment with a hit, seen from another moment; null where there is none. */
+  /** The time of the next (1) or previous (-1) hit, seen from a time; null where there is none. */
   hitTimeFrom(time, direction) {
     const after = this.hitsUntil(time);
     if (direction > 0) return after < this.hits ? this.hit_times[after] : null;

@@ -1,12 +1,12 @@
 // The replay: what is on the page, and how a time, a choice or a key changes it.
 
-import { Camera, bodyUnder, steer } from "./camera.js";
+import { Camera, bodyUnder, controlCamera } from "./camera.js";
 import { Clock } from "./clock.js";
 import { HitList } from "./hitlist.js";
 import { Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
 
-const GLOW = 0.3; // s, at speed 1, for which a hit can be seen
+const SHOWN_FOR = 0.3; // s, at speed 1, for which a hit can be seen
 const AHEAD = 400; // legs of a path drawn at the most
 const NAMES = ["page", "panel", "ink", "edge", "plain", "met", "wall", "chosen", "halo"];
 const by = (id) => document.getElementById(id);
@@ -14,7 +14,7 @@ const by = (id) => document.getElementById(id);
 export class Replay {
   constructor() {
     this.camera = new Camera();
-    this.clock = new Clock(() => this._stale());
+    this.clock = new Clock(() => this._requestDraw());
     this.timeline = new Timeline(by("timeline"));
     this.list = new HitList(by("hits"), (hit) => this.goTo(this.recording.hit_times[hit], this.recording.nameOf(hit)));
     this.chosen = -1;
@@ -22,7 +22,7 @@ export class Replay {
     try {
       this.stage = new Stage(this.canvas);
       document.documentElement.classList.add("drawn");
-      steer(this.canvas, this.camera, () => this._stale(), (x, y) => this._pick(x, y));
+      controlCamera(this.canvas, this.camera, () => this._requestDraw(), (x, y) => this._pick(x, y));
     } catch (error) {
       by("nothing").hidden = false;
     }
@@ -41,15 +41,15 @@ export class Replay {
     by("body").max = recording.count - 1;
     for (const id of ["play", "before", "after", "back", "on", "time"]) by(id).disabled = !recording.duration;
     this.choose(this.chosen < recording.count ? this.chosen : -1);
-    this._stale();
+    this._requestDraw();
   }
 
-  /** Begin to play, unless people have asked their system for less motion. */
+  /** Begin to play, unless the system is set to reduce motion. */
   begin() {
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.clock.play(true);
   }
 
-  /** Stop at a time, and say what happens there. */
+  /** Stop at a time, and announce what happens there. */
   goTo(time, what = "") {
     this.clock.playing = false;
     this.clock.seek(time);
@@ -64,7 +64,7 @@ export class Replay {
     by("only").disabled = body < 0;
     if (body < 0) by("only").checked = false;
     this.list.load(recording, by("only").checked ? all[body] : Array.from({ length: recording.hits }, (_, hit) => hit));
-    this._stale();
+    this._requestDraw();
   }
 
   _listen() {
@@ -87,9 +87,9 @@ export class Replay {
     by("speed").addEventListener("change", () => (clock.speed = Number(by("speed").value)));
     by("view").addEventListener("click", () => {
       this.camera.reset();
-      this._stale();
+      this._requestDraw();
     });
-    for (const id of ["halos", "ahead"]) by(id).addEventListener("change", () => this._stale());
+    for (const id of ["halos", "ahead"]) by(id).addEventListener("change", () => this._requestDraw());
     by("only").addEventListener("change", () => this.choose(this.chosen));
     by("body").addEventListener("change", () => {
       const value = by("body").value === "" ? -1 : Number(by("body").value);
@@ -97,7 +97,7 @@ export class Replay {
     });
     document.addEventListener("keydown", (event) => this._key(event));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this._colours());
-    new ResizeObserver(() => this._stale()).observe(this.canvas);
+    new ResizeObserver(() => this._requestDraw()).observe(this.canvas);
     const draw = (now) => {
       clock.tick(now);
       if (this._dirty && this.recording) this._draw();
@@ -143,7 +143,7 @@ export class Replay {
     return this.camera.view(this.recording.halfBox, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
   }
 
-  _stale() {
+  _requestDraw() {
     this._dirty = true;
   }
 
@@ -153,15 +153,15 @@ export class Replay {
       const hex = style.getPropertyValue(`--${name}`).trim();
       return [name, [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255)];
     }));
-    this._stale();
+    this._requestDraw();
   }
 
-  /** How long a hit is seen, in s of the recording: while it plays long enough for an eye, else for its frame alone. */
-  get _glow() {
-    return this.clock.playing ? Math.max(GLOW * this.clock.speed, this.recording.step) : this._moment;
+  /** How long a hit is marked, in s of the recording: while it plays long enough to be seen, else for its frame alone. */
+  get _markedFor() {
+    return this.clock.playing ? Math.max(SHOWN_FOR * this.clock.speed, this.recording.step) : this._moment;
   }
 
-  /** How far back a hit still happens now: where one happens at this very time, not at all. */
+  /** How old a hit may be, in s, to count as one of now; none at all where a hit happens at exactly this time. */
   get _moment() {
     const { clock, recording } = this, before = recording.hitsUntil(clock.time) - 1;
     const exact = before >= 0 && clock.time - recording.hit_times[before] < 1e-9;
@@ -175,7 +175,7 @@ export class Replay {
       stage.fit();
       recording.posesAt(clock.time, stage.positions, stage.quaternions);
       const lines = this._mark(stage);
-      stage.draw(this._view(), this.colours, { halos: by("halos").checked, ...this._foresee(lines) });
+      stage.draw(this._view(), this.colours, { halos: by("halos").checked, ...this._pathsToNextHit(lines) });
     }
     this.timeline.draw(clock.time, this.colours);
     this.list.follow(clock.time, 1e-9);
@@ -187,7 +187,7 @@ export class Replay {
     const { clock, recording } = this, lines = [];
     stage.marks.fill(0);
     for (let hit = recording.hitsUntil(clock.time) - 1; hit >= 0; hit--) {
-      const age = (clock.time - recording.hit_times[hit]) / this._glow;
+      const age = (clock.time - recording.hit_times[hit]) / this._markedFor;
       if (age >= 1) break;
       const first = recording.hit_first[hit], second = recording.hit_second[hit], bright = (1 - age) ** 0.7;
       const place = second >= 0 ? 0 : 1;
@@ -202,8 +202,8 @@ export class Replay {
     return lines;
   }
 
-  /** The paths to the next hit: of the chosen body, or of whoever comes first. */
-  _foresee(lines) {
+  /** The paths to the next hit: of the chosen body, or of all bodies where none is chosen. */
+  _pathsToNextHit(lines) {
     const { chosen, clock, recording, stage } = this, ghosts = [];
     if (chosen >= 0) ghosts.push([...stage.positions.subarray(3 * chosen, 3 * chosen + 3), 1.12 * recording.sizes[chosen]]);
     if (!by("ahead").checked) return { lines, ghosts };
@@ -261,7 +261,7 @@ export class Replay {
     }
   }
 
-  /** Tell those who do not see the picture. */
+  /** Write what is shown for screen readers. */
   _say(what = "") {
     const { clock, recording, chosen } = this;
     const now = this._hitsNow().map((hit) => recording.nameOf(hit)).join(", ");

@@ -1,4 +1,4 @@
-// The programs that draw: lit bodies, see-through spheres, lines of some width, and the faces of the box.
+// The shader programs: lit bodies, transparent spheres, lines of some width, and the faces of the box.
 
 const TURN = `
 vec3 turned(vec4 q, vec3 v) { return v + 2.0 * cross(q.yzw, cross(q.yzw, v) + q.x * v); }
@@ -28,7 +28,7 @@ in vec3 across;
 in vec3 spot;
 flat in vec3 marked;
 uniform vec3 eye, right, up, forward, plain, met, wall, chosen, page;
-uniform vec2 haze;                       // distance at which it begins, and one over its depth
+uniform vec2 fog;                       // distance at which it begins, and one over its depth
 out vec4 colour;
 void main() {
   vec3 n = normalize(across), seen = normalize(eye - spot);
@@ -42,7 +42,7 @@ void main() {
   float rim = pow(1.0 - max(dot(n, seen), 0.0), 3.0);
   vec3 lit = base * (0.3 + 0.24 * above + 0.66 * direct) + 0.16 * shine;
   lit = mix(lit, lit * 0.72, rim) + base * 0.35 * max(marked.x, marked.z) * rim;
-  float far = clamp((distance(eye, spot) - haze.x) * haze.y, 0.0, 1.0);
+  float far = clamp((distance(eye, spot) - fog.x) * fog.y, 0.0, 1.0);
   colour = vec4(mix(lit, page, 0.42 * far), 1.0);
 }`,
 };

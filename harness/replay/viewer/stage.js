@@ -32,7 +32,7 @@ export class Stage {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** Make ready for the bodies of a recording. */
+  /** Prepare to draw the bodies of a recording. */
   load(recording) {
     this.recording = recording;
     this.positions = new Float64Array(3 * recording.count);
@@ -71,7 +71,7 @@ export class Stage {
     this._drawLines(view, this._edges(view, colours));
     gl.depthMask(false);
     if (halos) this._drawSpheres(view, colours.halo, this._spheres(), 0.6);
-    gl.disable(gl.DEPTH_TEST); // what is asked for can be seen through all else
+    gl.disable(gl.DEPTH_TEST); // paths and the chosen body are shown even behind other bodies
     this._drawLines(view, lines);
     this._drawSpheres(view, colours.chosen, new Float32Array(ghosts.flat()), 1);
     gl.enable(gl.DEPTH_TEST);
@@ -96,7 +96,7 @@ export class Stage {
 
   _drawBodies(view, colours) {
     const { gl, body, recording } = this;
-    const scale = this.canvas.height / view.spread / 2;
+    const scale = this.canvas.height / view.tanHalfField / 2;
     const near = [], far = [];
     for (let i = 0; i < recording.count; i++) {
       const w = project(view.matrix, ...this.positions.subarray(3 * i, 3 * i + 3))[3];
@@ -106,7 +106,7 @@ export class Stage {
     gl.uniformMatrix4fv(body.uniforms.camera, false, view.matrix);
     for (const name of ["eye", "right", "up", "forward"]) gl.uniform3fv(body.uniforms[name], view[name]);
     for (const name of ["plain", "met", "wall", "chosen", "page"]) gl.uniform3fv(body.uniforms[name], colours[name]);
-    gl.uniform2f(body.uniforms.haze, view.distance - 0.5 * view.radius, 1 / (1.5 * view.radius));
+    gl.uniform2f(body.uniforms.fog, view.distance - 0.5 * view.radius, 1 / (1.5 * view.radius));
     for (const [form, bodies] of [[this.near, near], [this.far, far]]) {
       bodies.forEach((i, place) => {
         const at = INSTANCE * place;

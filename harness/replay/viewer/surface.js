@@ -45,7 +45,7 @@ function faceNormal(vertices, faces, face) {
   return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
 }
 
-/** The same mesh with the vertices of each cell of a grid drawn together: enough for a body of few pixels. */
+/** The same mesh with the vertices of each cell of a grid merged into one: enough for a body of few pixels. */
 export function coarse(vertices, faces, cells = 9) {
   const cell = new Map(), sums = [], into = new Uint32Array(vertices.length / 3);
   for (let vertex = 0; vertex < into.length; vertex++) {
@@ -68,7 +68,7 @@ export function coarse(vertices, faces, cells = 9) {
   return { vertices: new Float32Array(sums.flatMap(([x, y, z, n]) => [x / n, y / n, z / n])), faces: new Uint32Array(kept) };
 }
 
-/** A sphere of diameter 1: an icosahedron whose faces are halved so many times. */
+/** A sphere of diameter 1: an icosahedron whose edges are halved `halvings` times. */
 export function sphere(halvings) {
   const t = (1 + Math.sqrt(5)) / 2;
   const points = [[-1, t, 0], [1, t, 0], [-1, -t, 0], [1, -t, 0], [0, -1, t], [0, 1, t], [0, -1, -t], [0, 1, -t],

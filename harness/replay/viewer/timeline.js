@@ -1,4 +1,4 @@
-// How many hits fall when: bars above the slider, with the time that is shown.
+// The number of hits over time, as bars above the slider, and a mark at the time that is shown.
 
 export class Timeline {
   constructor(canvas) {

@@ -1,0 +1,98 @@
+"""Bodies as FCL collision objects: spheres, convex hulls or triangle meshes, one geometry for all bodies of a size.
+
+FCL checks little: with an empty mesh, an index out of range or a pose that is not finite it crashes or answers wrongly.
+Meshes and hulls are valid here, for the scene has checked them; poses are checked before FCL gets them.
+"""
+
+from __future__ import annotations
+
+import fcl
+import numpy as np
+
+from harness.arrays import Floats, Ints
+from harness.narrowphase.units import unit_of
+from harness.scene.mesh import Triangles
+from harness.scene.scene import Scene
+
+
+class FclObjects:
+    """One FCL object a body.
+
+    Parameters
+    ----------
+    scene : Scene
+    shared : whether bodies of the same size share one geometry
+
+    Attributes
+    ----------
+    objects : list of n fcl.CollisionObject
+    geometries : list of n fcl.CollisionGeometry, theirs
+    unit : m; FCL's lengths are multiples of it
+    """
+
+    def __init__(self, scene: Scene, *, shared: bool = True) -> None:
+        self.unit = unit_of(scene.bodies.sizes)
+        self._turning = scene.shape != "sphere"
+        sizes = (scene.bodies.sizes / self.unit).tolist()
+        if shared:
+            by_size = {size: _geometry(scene, size, self.unit) for size in dict.fromkeys(sizes)}
+            self.geometries = [by_size[size] for size in sizes]
+        else:
+            self.geometries = [_geometry(scene, size, self.unit) for size in sizes]
+        self.objects = [fcl.CollisionObject(geometry) for geometry in self.geometries]
+
+    def place(self, positions: Floats, quaternions: Floats, bodies: Ints | None = None) -> None:
+        """Move objects.
+
+        Parameters
+        ----------
+        positions : (n, 3) float array, m
+        quaternions : (n, 4) float array, unit, w x y z; not looked at for spheres
+        bodies : (k,) int array, those to move; all of them without
+
+        Raises
+        ------
+        ValueError
+            For a pose that is not finite, which FCL would answer with a crash or a false hit.
+        """
+        if not (np.isfinite(positions).all() and np.isfinite(quaternions).all()):
+            raise ValueError("a pose is not finite")
+        objects = self.objects
+        if bodies is not None:
+            objects, positions, quaternions = [objects[i] for i in bodies], positions[bodies], quaternions[bodies]
+        places = positions / self.unit
+        if self._turning:
+            for placed, place, quaternion in zip(objects, places, quaternions, strict=True):
+                placed.setQuatRotation(quaternion)
+                placed.setTranslation(place)
+        else:
+            for placed, place in zip(objects, places, strict=True):
+                placed.setTranslation(place)
+
+    def place_one(self, body: int, position: Floats, quaternion: Floats) -> None:
+        """Move one object to a finite pose, as `place` does."""
+        self.objects[body].setQuatRotation(quaternion)
+        self.objects[body].setTranslation(position / self.unit)
+
+
+def _geometry(scene: Scene, size: float, unit: float) -> fcl.CollisionGeometry:
+    """Of a body whose size is so many units; m each."""
+    if scene.shape == "sphere" or scene.mesh is None:
+        return fcl.Sphere(size / 2)
+    solid = scene.solid_of(size * unit)
+    # the unit is a power of two, so neither product loses a digit
+    return (_convex if scene.shape == "hull" else _surface)(solid.vertices / unit, solid.faces)
+
+
+def _convex(vertices: Floats, faces: Triangles) -> fcl.Convex:
+    # each face is preceded by its number of corners
+    counted = np.hstack([np.full((len(faces), 1), 3, np.int64), faces.astype(np.int64)])
+    return fcl.Convex(vertices, len(faces), counted.ravel())
+
+
+def _surface(vertices: Floats, faces: Triangles) -> fcl.BVHModel:
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    return model

@@ -1,0 +1,138 @@
+"""What a backend says of itself: why it cannot be used, or its shapes, tolerances and approximations.
+
+Those of this package are asked here. A stranger's is imported in a process of its own, so that one that exits, hangs
+or prints costs its own line only:
+
+    python -m harness.backends.statement FD NAME
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+
+from harness.backends import registry
+from harness.backends.protocol import approximations, precision, units
+from harness.child_process import Channel, Child
+from harness.process_limits import isolate
+from harness.vocabulary import Shape
+
+# s for the import and the answer of a stranger, of which a person waits for none with the first and for all that
+# their plan depends on with the second.
+LISTED, NEEDED = 20.0, 120.0
+
+
+@dataclass(frozen=True)
+class Statement:
+    """What a backend says.
+
+    Parameters
+    ----------
+    missing : why it cannot be used, in one line; None if it can, and only then is the rest filled in
+    installed : False where it lacks what it imports
+    tolerance : of size, by the shapes that it has
+    approximations : by what it replaces a shape
+    """
+
+    missing: str | None
+    installed: bool = True
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    approximations: Mapping[str, str] = field(default_factory=dict)
+    units: str = ""
+    precision: str = ""
+
+
+def statement(name: str, seconds: float = LISTED) -> Statement:
+    """Ask a declared backend; whatever it does, it never raises.
+
+    Parameters
+    ----------
+    name : of a declared backend
+    seconds : that a stranger's may take
+    """
+    return _asked(name, seconds, tuple(sys.path))
+
+
+def missing(name: str) -> str | None:
+    """Why a backend that is an extra of its package cannot be used, with what to do about it; None if it can.
+
+    Of other backends nothing is said: their runs will say it.
+    """
+    if not registry.is_extra(name):
+        return None
+    said = statement(name, NEEDED)
+    return None if said.installed else f'backend "{name}" cannot be used: {said.missing}'
+
+
+def approximation(name: str, shape: Shape) -> str | None:
+    """By what a backend replaces a shape, if it does.
+
+    Raises
+    ------
+    BackendError
+    """
+    if _process_may_be_lost or registry.ours(name):
+        return approximations(registry.create(name)).get(shape)
+    said = statement(name, NEEDED)
+    if said.missing is not None:
+        raise registry.BackendError(name, said.missing)
+    return said.approximations.get(shape)
+
+
+def ask_strangers_here() -> None:
+    """Ask a stranger's in this process from now on: it was started to be lost if need be."""
+    global _process_may_be_lost
+    _process_may_be_lost = True
+
+
+_process_may_be_lost = False
+
+
+@lru_cache(maxsize=32)
+def _asked(name: str, seconds: float, path: tuple[str, ...]) -> Statement:
+    return _say(name) if registry.ours(name) else _say_elsewhere(name, seconds)
+
+
+def _say(name: str) -> Statement:
+    """In this process."""
+    try:
+        backend = registry.create(name)
+        with registry.silence():
+            return Statement(
+                None,
+                tolerance={str(shape): float(backend.tolerance(shape)) for shape in backend.shapes},
+                approximations={str(shape): str(how) for shape, how in approximations(backend).items()},
+                units=units(backend),
+                precision=precision(backend),
+            )
+    except registry.BackendError as error:
+        return Statement(_one_line(error.why), installed=False)
+    except (Exception, SystemExit) as error:
+        return Statement(_one_line(f"{type(error).__name__}: {error}"))
+
+
+def _say_elsewhere(name: str, seconds: float) -> Statement:
+    with Child.spawn("harness.backends.statement", [name], os.environ) as child:
+        answer = child.receive(seconds)
+        if answer == "timeout":
+            return Statement(f"importing it did not end within {seconds:g} s")
+        if not isinstance(answer, bytes):
+            return Statement(f"importing it ended its process with {child.end()}")
+    try:
+        return Statement(**json.loads(answer))
+    except (ValueError, TypeError):
+        return Statement("what it says of itself is garbage")
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+if __name__ == "__main__":
+    isolate()
+    Channel(int(sys.argv[1])).send(json.dumps(asdict(_say(sys.argv[2]))).encode())
+    os._exit(0)

@@ -1,0 +1,172 @@
+"""The verdicts of two backends on one scene, pose after pose: those that differ are judged, and some of the others too.
+
+What both agree on is put to the judge as well, since both may be wrong: of every fourth hard pose, and as bodies fly of
+one pair a frame whose bounding spheres touch (of meshes, whose judgement takes long, every tenth frame).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from harness.arrays import Pairs
+from harness.compare.certificate import Judgement
+from harness.compare.isolated import Facts
+from harness.compare.judge import judge, touches
+from harness.compare.outcome import Case, Comparison
+from harness.compare.poses import Pose
+from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally
+from harness.scene.scene import Scene
+
+Kind = Literal["undecided", "containment", "approximation", "real"]
+Pair = tuple[int, int]
+
+_HARD_CHECKED, _MESHES_CHECKED = 4, 10
+
+# A verdict stands on rounded coordinates, whatever the backend: the sum of a position and a vertex, on both sides.
+_ROUNDING = 4 * float(np.finfo(float).eps)
+
+
+class PairAudit:
+    """The audit of two backends.
+
+    Parameters
+    ----------
+    names : of both
+    scene : with the hulls that both are held against
+    facts : what each declares of itself
+    flown : whether the bodies fly; else they are put where verdicts are hard
+
+    Attributes
+    ----------
+    found : what has been found so far
+    """
+
+    def __init__(self, names: NamePair, scene: Scene, facts: tuple[Facts, Facts], *, flown: bool) -> None:
+        self._names, self._scene, self._facts, self._flown = names, scene, facts, flown
+        self._tally, self._gaps = Tally(names, scene.shape), GapHistogram(names, scene.shape)
+        self._checked = CheckedAgreement(names, scene.shape)
+        self._approximation = _approximation(names, scene, facts) if flown else None
+        self.found = Comparison(
+            tallies=[self._tally],
+            checked=[self._checked],
+            gaps=[self._gaps],
+            approximations=[self._approximation] if self._approximation else [],
+        )
+
+    def add(self, pose: Pose, query_index: int, answers: Sequence[Pairs]) -> None:
+        """Count the verdicts of both at a pose.
+
+        Parameters
+        ----------
+        pose : Pose
+        query_index : which query of this scene it was, from 1
+        answers : the touching pairs, as each has them
+        """
+        count = len(self._scene.bodies)
+        pairs = count * (count - 1) // 2
+        first, second = (_as_set(answer) for answer in answers)
+        differing = sorted(first ^ second)
+        self._tally.poses += 1
+        self._tally.verdicts += pairs
+        self._tally.agree += pairs - len(differing)
+        truths = {pair: self._judge_disagreement(pose, query_index, pair, pair in first) for pair in differing}
+        if self._approximation is not None:
+            reported = first if self._approximation.backend == self._names[0] else second
+            _count_approximation(self._approximation, pairs, first & second, reported, truths)
+        self._check_agreement(pose, query_index, first, second)
+
+    def _judge_disagreement(self, pose: Pose, query_index: int, pair: Pair, first_reports: bool) -> Judgement:
+        """Judge a disagreement and count it."""
+        truth = judge(self._scene, *pair, pose.positions, pose.quaternions)
+        wrong = int(first_reports == truth.touching)
+        kind = self._kind(pose, pair, truth, wrong)
+        setattr(self._tally, kind, getattr(self._tally, kind) + 1)
+        self._gaps.count(kind, truth.gap / float(self._scene.bodies.sizes[list(pair)].min()))
+        if kind == "real":
+            self.found.cases.append(self._case(self._names[wrong], pair, truth, pose, query_index))
+        return truth
+
+    def _check_agreement(self, pose: Pose, query_index: int, first: set[Pair], second: set[Pair]) -> None:
+        """Judge one of the verdicts that both agree on, at every n-th query."""
+        every = _HARD_CHECKED if not self._flown else _MESHES_CHECKED if self._scene.shape == "mesh" else 1
+        pair = _near_pair(self._scene, pose, query_index) if (query_index - 1) % every == 0 else None
+        if pair is None or (pair in first) != (pair in second):
+            return
+        self._checked.verdicts += 1
+        if touches(self._scene, *pair, pose.positions, pose.quaternions) == (pair in first):
+            return
+        truth = judge(self._scene, *pair, pose.positions, pose.quaternions)
+        wrong = [place for place in (0, 1) if self._kind(pose, pair, truth, place) == "real"]
+        names = " and ".join(self._names[place] for place in wrong)
+        if wrong:
+            self._checked.contradicted += 1
+            self.found.shared.append(self._case(names, pair, truth, pose, query_index))
+
+    def _case(self, wrong: str, pair: Pair, truth: Judgement, pose: Pose, query_index: int) -> Case:
+        return Case(self._names, wrong, pair, truth, scene=self._scene, pose=pose, query_index=query_index)
+
+    def _kind(self, pose: Pose, pair: Pair, truth: Judgement, wrong: int) -> Kind:
+        """What explains that the backend at a place in `names` is wrong; "real" if nothing does."""
+        band = _band(self._scene, self._facts, pose, pair)
+        if abs(truth.gap) <= band:
+            return "undecided"
+        if truth.contained:
+            return "containment"
+        if self._facts[wrong].approximated is not None:
+            # an approximation by the hull may be wrong about the mesh, but must be right about the hull
+            hulls = judge(replace(self._scene, shape="hull"), *pair, pose.positions, pose.quaternions)
+            if hulls.touching != truth.touching or abs(hulls.gap) <= band:
+                return "approximation"
+        return "real"
+
+
+def _approximation(names: NamePair, scene: Scene, facts: tuple[Facts, Facts]) -> Approximation | None:
+    """To be counted where one of two replaces the shape, and the other does not."""
+    replacing = [place for place in (0, 1) if facts[place].approximated is not None]
+    return Approximation(names, scene.shape, names[replacing[0]]) if len(replacing) == 1 else None
+
+
+def _count_approximation(
+    counts: Approximation, pairs: int, agreed: set[Pair], reported: set[Pair], truths: Mapping[Pair, Judgement]
+) -> None:
+    counts.verdicts += pairs
+    counts.reported += len(reported)
+    counts.touching += len(agreed) + sum(truth.touching for truth in truths.values())
+    false = [truth for pair, truth in truths.items() if pair in reported and not truth.touching]
+    counts.false_hits += len(false)
+    counts.contained += sum(truth.contained for truth in false)
+    counts.misses += sum(truth.touching and pair not in reported for pair, truth in truths.items())
+
+
+def _near_pair(scene: Scene, pose: Pose, query_index: int) -> Pair | None:
+    """One of the pairs whose bounding spheres touch, another each time."""
+    radii = scene.bodies.radii
+    pairs = cKDTree(pose.positions).query_pairs(2 * float(radii.max()), output_type="ndarray")
+    apart = np.linalg.norm(pose.positions[pairs[:, 0]] - pose.positions[pairs[:, 1]], axis=1)
+    near = pairs[apart <= radii[pairs].sum(axis=1)]
+    if not len(near):
+        return None
+    ordered = near[np.lexsort((near[:, 1], near[:, 0]))]
+    i, j = ordered[np.random.default_rng(query_index).integers(len(ordered))].tolist()
+    return i, j
+
+
+def _as_set(pairs: Pairs) -> set[Pair]:
+    return {(i, j) for i, j in pairs.tolist()}
+
+
+def _band(scene: Scene, facts: tuple[Facts, Facts], pose: Pose, bodies: tuple[int, int]) -> float:
+    """m; of a nearer contact the two backends need not agree."""
+    holding = [bool(one.hulls) for one in facts]
+    trusted = sum(holding) == 1
+    tolerance = max(
+        one.hulls_tolerance if trusted and holds else one.tolerance for one, holds in zip(facts, holding, strict=True)
+    )
+    chosen = list(bodies)
+    largest = float(scene.bodies.sizes[chosen].max())
+    return tolerance * largest + _ROUNDING * (float(np.abs(pose.positions[chosen]).max()) + largest)

@@ -1,0 +1,274 @@
+"""Predictive scheduling: from event to event, without frames.
+
+The event loop is `harness.motion.predictive`; here are its plan, and a run of it, with its clock, counters and what it
+conserves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from harness.arrays import Floats
+from harness.broadphase.hierarchical_grid import HierarchicalGrid
+from harness.measure.clocks import Clock
+from harness.measure.conservation import Conservation, energy
+from harness.measure.kinetics import Kinetics
+from harness.methods.culled import equal_sizes
+from harness.methods.method import Method, Pipeline, WarmUp
+from harness.methods.penetration import Penetration
+from harness.methods.stages import Decisions, Plan
+from harness.methods.stepped import decide_penetration, decide_recording
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
+from harness.motion.course import CourseLog
+from harness.motion.finite import require_finite_state
+from harness.motion.hits import Outcome, Trace
+from harness.motion.kinematics import Trajectory
+from harness.motion.law import MotionLaw
+from harness.motion.predictive.preparation import check, choose_search
+from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
+from harness.motion.predictive.solid_simulation import SolidSimulation
+from harness.motion.predictive.solids import Form, needs_its_surface
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
+
+# How often the state of a run is measured outside of its clock; events are the same to the bit however often.
+LOOKS = 5
+
+_FIXED = "event-driven motion cannot do otherwise"
+
+
+class Predictive(Method):
+    """Computes the next hit of every body, and flies from hit to hit."""
+
+    def plan(self, scene: Scene, law: MotionLaw, *, recorded: bool = False) -> Plan:
+        decisions, solid = Decisions(self.forced), scene.shape != "sphere"
+
+        def take(name: str, kept: bool, why: str) -> None:
+            decisions.take(name, kept, why, fixed=_FIXED)
+
+        take("frames", False, "events are computed, not stepped to")
+        if solid:
+            take("orientations", True, "bodies are turned where a contact is searched, and nowhere else")
+            take("backend", False, "contacts are searched by conservative advancement; no library is asked")
+        else:
+            take("orientations", False, "a sphere looks the same however it is turned")
+            take("backend", False, "spheres are solved in closed form; no library is asked")
+        _pairs(scene, law, decisions)
+        take("walls", True, "the next wall of each body, from its velocity")
+        if solid and law.response == "none":
+            take("wall_search", False, "response is none: the box folds the path of each bounding sphere exactly")
+        elif solid:
+            take("wall_search", True, "the support function of the hull, once a bounding sphere meets the wall")
+        decide_penetration(scene, decisions)
+        decide_recording(recorded, decisions)
+        return decisions.finish()
+
+    def load(self, scene: Scene, plan: Plan) -> Pipeline:
+        return EventDriven(scene, plan, self.tolerance)
+
+    def warm_ups(self) -> Iterator[WarmUp]:
+        shape: Shape = self.name.shape
+        yield f"events of {shape}s", partial(_fly_events, shape)
+
+
+def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
+    """How the next hit of a pair is found: among which neighbours, and by which searches."""
+    count, solid = len(scene.bodies), scene.shape != "sphere"
+    alone = f"there is no pair of bodies among {count}"
+    grids = "cells of one size" if equal_sizes(scene) else "a hierarchy of cells, one level a size class"
+    if solid:
+        found = f"from when to when each body's bounding sphere overlaps its neighbours', found by {grids}"
+    else:
+        found = f"the next hit of each body among its neighbours, from {grids} or from lists when dense"
+
+    def take(name: str, kept: bool, why: str) -> None:
+        decisions.take(name, kept and count > 1, why if count > 1 else alone, fixed=_FIXED)
+
+    take("pairs", True, found)
+    if not solid:
+        _neighbour_lists(scene, law, decisions)
+        return
+    take("hull_search", True, "hulls are advanced to their contact when their spheres meet, not before")
+    if scene.shape == "hull":
+        decisions.take("mesh_search", False, "the shape is the hull", fixed="the shape is the hull")
+    elif needs_its_surface(scene):
+        take("mesh_search", True, "surfaces are advanced to their contact when their hulls meet, not before")
+    else:
+        take("mesh_search", False, "the mesh is convex, its own hull, and no body can be inside an equal one")
+
+
+def _neighbour_lists(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
+    """Whether neighbours are listed, and the lists renewed now and then, or looked for in cells at every search."""
+    bodies = scene.bodies
+    start = check(bodies.positions, bodies.velocities, bodies.radii, bodies.masses, scene.box.half)
+    listed = choose_search(start, law.response) == "lists"
+    if listed:
+        why = f"at packing {scene.packing:.3g} bodies stay among their neighbours: these are listed"
+    else:
+        why = "neighbours come from cells: lists pay at high packing, for bodies of one size that answer their hits"
+    decisions.take("neighbour_lists", listed, why, fixed="times of hits would differ in their last digits")
+
+
+class EventDriven:
+    """The plan of an event-driven run, assembled.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan of this scene
+    tolerance : of size; surfaces nearer than that touch. Spheres need none
+    """
+
+    def __init__(self, scene: Scene, plan: Plan, tolerance: float) -> None:
+        self._scene, self._plan, self._tolerance = scene, plan, tolerance
+        self._form = Form(scene, surface=plan.keeps("mesh_search")) if plan.keeps("orientations") else None
+
+    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+        """Fly the scene for `law.duration`, event by event; what is due at that very time still happens.
+
+        Parameters
+        ----------
+        law : MotionLaw
+        traced : keep every event
+
+        Returns
+        -------
+        Outcome
+            With the counters, the run's clock and the errors of a predictive run.
+        """
+        scene, plan, bodies = self._scene, self._plan, self._scene.bodies
+        watch = _Watch(scene, plan, law)
+        course = CourseLog(bodies.positions, bodies.velocities) if plan.keeps("recording") else None
+        clock = Clock("run_seconds")
+        simulation = self._start(law, record=traced or course is not None)
+        clock.lap("run_seconds")
+        for look in range(1, LOOKS + 1):
+            clock.start()
+            until = law.duration * look / LOOKS
+            if course is not None:
+                course.follow(simulation, until)
+            else:
+                simulation.advance(until)
+            clock.lap("run_seconds")
+            watch.look(simulation, until)
+        counted = simulation.counters
+        metrics: dict[str, float] = {**counted, **clock.metrics(), **watch.metrics(simulation)}
+        for kind in ("", "_elapsed"):
+            if metrics[f"run_seconds{kind}"] > 0.0:
+                metrics[f"simulated_per_second{kind}"] = law.duration / metrics[f"run_seconds{kind}"]
+        if counted["events"]:
+            metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
+            metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
+        trace = _trace(scene, simulation, law.duration, counted) if traced else None
+        return Outcome(metrics, trace, course.course() if course is not None else None)
+
+    def _start(self, law: MotionLaw, *, record: bool) -> Simulation:
+        """The simulation at time 0; its clock runs already."""
+        bodies, box = self._scene.bodies, self._scene.box
+        if self._form is not None:
+            return SolidSimulation(
+                bodies, box, self._form, law.response, law.restitution, record=record, tolerance=self._tolerance
+            )
+        return Simulation(
+            bodies.positions,
+            bodies.velocities,
+            bodies.radii,
+            bodies.masses,
+            box.half,
+            response=law.response,
+            restitution=law.restitution,
+            record=record,
+            search="lists" if self._plan.keeps("neighbour_lists") else "cells",
+        )
+
+
+class _Watch:
+    """Measures a run at a few times, outside of its clock: what it conserves, escaped bodies, the depth of overlaps."""
+
+    def __init__(self, scene: Scene, plan: Plan, law: MotionLaw) -> None:
+        self._elastic, self._half = law.response == "elastic", scene.box.half
+        self._conservation = Conservation(scene.bodies)
+        self._kinetics = Kinetics(scene, law.response, law.restitution)
+        self._depth = _Depth(scene) if plan.keeps("penetration") else None
+        self._outside = np.zeros(len(scene.bodies), np.bool_)
+        self._begun = False
+
+    def look(self, simulation: Simulation, time: float) -> None:
+        """Measure the state at a time, s."""
+        positions, velocities = simulation.positions, simulation.velocities
+        require_finite_state(positions, velocities, simulation.time)
+        self._conservation.observe(velocities)
+        if self._elastic:
+            self._conservation.observe_momentum(velocities, simulation.wall_impulses)
+        self._outside |= (np.abs(positions) > self._half).any(axis=1)
+        if self._depth is not None:
+            self._depth.look(positions, time)
+        if not self._begun:  # from the first look on, the start is forgotten
+            self._kinetics.begin(simulation)
+            self._begun = True
+
+    def metrics(self, simulation: Simulation) -> dict[str, float]:
+        """The errors and the kinetics measured."""
+        found = {
+            "energy_drift": self._conservation.energy_drift,
+            "escaped": float(np.count_nonzero(self._outside)),
+            **self._kinetics.end(simulation),
+        }
+        if self._elastic:
+            found["momentum_drift"] = self._conservation.momentum_drift
+        if self._depth is not None:
+            found["max_penetration"] = self._depth.deepest
+        return found
+
+
+class _Depth:
+    """The deepest overlap of those times."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.deepest = 0.0
+        self._trajectory = Trajectory(scene.bodies, scene.box, folded=False, turning=scene.shape != "sphere")
+        self._grid = HierarchicalGrid(scene.bodies.radii, scene.box)
+        self._penetration = Penetration(scene)
+
+    def look(self, positions: Floats, time: float) -> None:
+        pairs = self._grid.close_pairs(positions)
+        self._trajectory.move_to(time)
+        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))
+
+
+def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:
+    events: Any = simulation.take_events()
+    pair = events["kind"] == PAIR_EVENT
+    velocities = simulation.velocities
+    return Trace(
+        times=events["time"],
+        bodies=np.column_stack([events["i"], np.where(pair, events["j"], -1)]).astype(np.int64),
+        walls=np.where(pair, -1, events["wall"]).astype(np.int64),
+        time=duration,
+        positions=simulation.positions,
+        velocities=velocities,
+        energy=energy(velocities, scene.bodies.masses),
+        counters=counted,
+    )
+
+
+def _fly_events(shape: Shape) -> None:
+    """A flight from event to event with every response, from cells and from lists."""
+    scene, duration = two_bodies(shape), 0.3
+    stages = Decisions()
+    for name in ("pairs", "orientations", "hull_search"):
+        stages.take(name, name == "pairs" or shape != "sphere", "")
+    stages.take("mesh_search", shape == "mesh" and needs_its_surface(scene), "")
+    decide_penetration(scene, stages)
+    pipeline = EventDriven(scene, stages.finish(), tolerance=1e-6)
+    for response in RESPONSES:
+        pipeline.fly(MotionLaw(duration, duration, response))
+    if shape != "mesh":
+        Penetration(scene).deepest(TOUCHING, scene.bodies.positions, scene.bodies.quaternions)
+
+
+METHOD = Predictive

@@ -1,0 +1,208 @@
+"""Methods that step from frame to frame: what their plans have in common, and how the plan becomes a pipeline.
+
+A frame moves the bodies, finds all touching pairs, answers them, then the walls. How the pairs are found is each
+method's own (`detector`); everything around it is decided and assembled here.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator
+from functools import partial
+from typing import ClassVar
+
+from harness.arrays import Floats, Pairs
+from harness.methods.method import Method, Pipeline, WarmUp
+from harness.methods.stages import Decisions, Plan
+from harness.methods.stepping import Detector, Stepping
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
+from harness.motion.law import MotionLaw
+from harness.motion.reach import all_at_rest, no_pair_can_meet, walls_are_out_of_reach
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
+
+
+class SteppedMethod(Method):
+    """A method that steps from frame to frame.
+
+    Attributes
+    ----------
+    leaves_out : whether its stages of detection are known, so that one that a scene does not need is left out
+    tests_everything : whether every pair and every wall is put to the test in every frame, needed or not
+    """
+
+    leaves_out: ClassVar[bool] = False
+    tests_everything: ClassVar[bool] = False
+
+    @abstractmethod
+    def finding(self, count: int) -> str:
+        """How the touching pairs of so many bodies are found, in a sentence of a plan."""
+
+    @abstractmethod
+    def detector(self, scene: Scene, plan: Plan) -> Detector:
+        """A detector of the stages of detection that the plan keeps, loaded with the scene.
+
+        Raises
+        ------
+        InputError
+            If the library that it stands on is missing, or cannot hold the scene.
+        """
+
+    def decide_detection(self, scene: Scene, decisions: Decisions) -> None:
+        """Decide on the stages of detection; without any, nothing of it is known."""
+
+    def no_detection(self, why: str, decisions: Decisions, *, fixed: str) -> None:
+        """Leave out all stages of detection."""
+
+    def warnings(self, scene: Scene) -> tuple[str, ...]:
+        """What a user should be warned of, such as an approximation."""
+        return ()
+
+    def detection(self, scene: Scene) -> Plan:
+        """The plan of detection alone, for a scene whose poses come from elsewhere."""
+        decisions = Decisions()
+        self.decide_detection(scene, decisions)
+        return decisions.finish(self.warnings(scene))
+
+    def plan(self, scene: Scene, law: MotionLaw, *, recorded: bool = False) -> Plan:
+        decisions, flown = Decisions(self.forced), law.frames * law.dt
+        self._motion(scene, decisions)
+        _orientations(scene, decisions)
+        pairs = self._pairs(scene, flown, decisions)
+        _response(law, pairs, decisions)
+        self._walls(scene, law, flown, pairs, decisions)
+        decide_penetration(scene, decisions)
+        decide_recording(recorded, decisions)
+        return decisions.finish(self.warnings(scene))
+
+    def load(self, scene: Scene, plan: Plan) -> Pipeline:
+        return Stepping(scene, plan, self.detector(scene, plan) if plan.keeps("pairs") else None)
+
+    def warm_ups(self) -> Iterator[WarmUp]:
+        shape: Shape = "sphere" if self.name.shape == "sphere" else "hull"
+        yield f"frames of {shape}s", partial(_fly_frames, shape)
+
+    def _motion(self, scene: Scene, decisions: Decisions) -> None:
+        if not all_at_rest(scene):
+            fixed = "bodies move"
+            decisions.take(
+                "motion", True, "bodies move: every frame places them and finds their pairs anew", fixed=fixed
+            )
+        elif self.leaves_out:
+            why = "no body moves: bodies are placed once and their pairs found once, for all frames"
+            decisions.take("motion", False, why)
+        else:
+            who = "brute force" if self.tests_everything else self.name.backend
+            why = f"no body moves, but {who} is asked about every frame"
+            decisions.take(
+                "motion",
+                True,
+                why,
+                fixed="it may be asked once for all frames only where its stages are known",
+            )
+
+    def _pairs(self, scene: Scene, flown: float, decisions: Decisions) -> bool:
+        """Whether pairs are tested at all, and by which stages."""
+        count = len(scene.bodies)
+        if count < 2:
+            why = f"there is no pair of bodies among {count}"
+            decisions.take("pairs", False, why, fixed=why)
+            self.no_detection(why, decisions, fixed=why)
+            return False
+        if self.leaves_out and no_pair_can_meet(scene, flown):
+            why = f"no two of {count} bodies can meet in {flown:g} s at their speeds"
+            if not decisions.take("pairs", False, why):
+                self.no_detection(why, decisions, fixed="no pair is tested; keep pairs")
+                return False
+        else:
+            decisions.take("pairs", True, self.finding(count), fixed="hits would be missed")
+        self.decide_detection(scene, decisions)
+        return True
+
+    def _walls(self, scene: Scene, law: MotionLaw, flown: float, pairs: bool, decisions: Decisions) -> None:
+        everything = self.tests_everything
+        if law.response == "none":
+            why = "response is none: the box folds the path of each bounding sphere exactly"
+            kept = decisions.take("walls", False, why, fixed="nothing would answer them")
+        elif not len(scene.bodies):
+            kept = decisions.take("walls", False, "there is no body", fixed="there is nothing to test")
+        elif not everything and walls_are_out_of_reach(scene, flown, law.response, no_pairs=not pairs):
+            kept = decisions.take("walls", False, f"no body can get to a wall in {flown:g} s")
+        else:
+            shapes = "spheres" if scene.shape == "sphere" else "the support function of the hull"
+            why = f"each body against six walls, by {shapes}"
+            kept = decisions.take("walls", True, why, fixed="bodies would leave the box")
+        if not kept:
+            decisions.take("wall_cull", False, "no wall is tested", fixed="no wall is tested")
+        elif scene.shape == "sphere":
+            why = "the bounding sphere is the body itself"
+            decisions.take("wall_cull", False, why, fixed=why)
+        elif everything:
+            why = "brute force puts the hull of every body to every wall"
+            decisions.take("wall_cull", False, why, fixed="brute force leaves nothing out; choose algorithm grid")
+        else:
+            decisions.take("wall_cull", True, "a body whose bounding sphere reaches no wall needs no support function")
+
+
+def decide_penetration(scene: Scene, decisions: Decisions) -> None:
+    """Whether the depth of overlaps is measured; for any method."""
+    if scene.shape == "mesh":
+        why = "a mesh is a surface: its depth of overlap is not defined"
+        decisions.take("penetration", False, why, fixed=why)
+    elif len(scene.bodies) < 2:
+        decisions.take("penetration", False, "no two bodies can overlap", fixed="no two bodies can overlap")
+    else:
+        decisions.take("penetration", True, "max_penetration is measured on touching pairs, outside every clock")
+
+
+def decide_recording(recorded: bool, decisions: Decisions) -> None:
+    """Whether the course of every body is kept; for any method."""
+    if recorded:
+        why = "a replay is made of this run: the course of every body is kept"
+        decisions.take("recording", True, why, fixed="the replay would be empty")
+    else:
+        decisions.take("recording", False, "nothing asks for recorded poses", fixed="there is nothing to record for")
+
+
+def _orientations(scene: Scene, decisions: Decisions) -> None:
+    if scene.shape == "sphere":
+        decisions.take("orientations", False, "a sphere looks the same however it is turned")
+    elif not scene.bodies.spins.any():
+        decisions.take("orientations", False, "no body spins, so each keeps the orientation it starts with")
+    else:
+        why = "bodies spin, and their shape is not a sphere"
+        decisions.take("orientations", True, why, fixed=why)
+
+
+def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
+    if law.response == "none":
+        why = "response is none: bodies pass through each other"
+        decisions.take("response", False, why, fixed="response is none")
+    elif not pairs:
+        decisions.take("response", False, "no two bodies meet", fixed="there is nothing to answer")
+    else:
+        why = f"touching pairs that approach are answered ({law.response})"
+        decisions.take("response", True, why, fixed="hits would not be answered; choose response none for that")
+
+
+class _AlwaysTouching:
+    """A detector for the warm-up, which compiles only what is around it: the two bodies always touch."""
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        return TOUCHING
+
+
+def _fly_frames(shape: Shape) -> None:
+    """Two frames with every response; every stage that a detector is not asked for is kept."""
+    scene, dt = two_bodies(shape), 0.3
+    for response in RESPONSES:
+        law = MotionLaw(2 * dt, dt, response)
+        decisions = Decisions()
+        decisions.take("motion", True, "")
+        _orientations(scene, decisions)
+        decisions.take("pairs", True, "")
+        _response(law, True, decisions)
+        decisions.take("walls", response != "none", "")
+        decisions.take("wall_cull", shape != "sphere", "")
+        decide_penetration(scene, decisions)
+        Stepping(scene, decisions.finish(), _AlwaysTouching()).fly(law)

@@ -1,0 +1,41 @@
+"""How the bodies of a run move, and for how long: all that a method needs to know of its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from harness.vocabulary import Response
+
+
+@dataclass(frozen=True)
+class MotionLaw:
+    """The law of a run's motion.
+
+    Parameters
+    ----------
+    duration : s of simulated time
+    dt : s from frame to frame; without effect where events are computed instead
+    response, restitution : of hits, see `harness.motion.response`
+    """
+
+    duration: float
+    dt: float
+    response: Response
+    restitution: float = 1.0
+
+    @property
+    def frames(self) -> int:
+        """The number of frames after the start: frame k is at k·dt, k = 1 … frames.
+
+        >>> MotionLaw(duration=10.0, dt=1 / 60, response="reflect").frames
+        600
+        """
+        return round(self.duration / self.dt)
+
+    def slowed(self, factor: float) -> MotionLaw:
+        """The same law with every time multiplied by a factor; a power of two changes no digit.
+
+        >>> MotionLaw(duration=10.0, dt=0.1, response="none").slowed(2.0)
+        MotionLaw(duration=20.0, dt=0.2, response='none', restitution=1.0)
+        """
+        return replace(self, duration=self.duration * factor, dt=self.dt * factor)

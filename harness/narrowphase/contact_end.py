@@ -1,0 +1,186 @@
+"""Until when two bodies that touch go on touching, for hulls and for surfaces.
+
+A contact is followed step by step: while the bodies are in each other, as long as that certainly lasts; while the gap
+is within the tolerance, as long as it takes points to move by what is left of it. It ends when the gap is seen to be
+wider than that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from harness.arrays import Ints
+from harness.kernel import inner, kernel
+from harness.narrowphase.crossing_duration import longest_crossing
+from harness.narrowphase.free_flight import Motion, RelativeMotion, fastest_passing, relative_motion, seen_at
+from harness.narrowphase.gjk import COLD_START, MARGIN, WarmStart, hull_distance
+from harness.narrowphase.mesh_advancement import MeshShape
+from harness.narrowphase.overlap_duration import overlap_lasts
+from harness.narrowphase.support import SupportMap
+from harness.narrowphase.surface_distance import surface_distance
+from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
+from harness.narrowphase.vectors import scaled
+from harness.narrowphase.verdicts import PairVerdict, SearchVerdict
+
+Shape = TypeVar("Shape", SupportMap, MeshShape)
+Memory = TypeVar("Memory")
+
+# Steps after which following a contact is given up. Ordinary ones take 50 to 200.
+MOST_STEPS = 20_000
+# Of the tolerance: the gap at which a contact ends, a little more than the one at which the next begins, and how far
+# bodies may move in a step though nothing proves that they touch.
+ENDING_GAP, RESOLUTION = 1.125, 0.125
+# How many levels above the triangles that crossed the next crossing is sought first, and for how many steps there and
+# from the roots.
+LEVELS_UP = 4
+NEARBY_STEPS = 200
+STEPS = 100_000
+# Of the time for which the last crossing lasted: the next one is to last as long, if one can be found.
+LESS = 0.5
+
+
+class ContactEnd(NamedTuple):
+    """How a contact goes on.
+
+    Attributes
+    ----------
+    verdict : SearchVerdict of its end
+    time : s, up to which it has been followed: its end, that of the window, or where it was given up
+    steps : instants that were looked at
+    """
+
+    verdict: SearchVerdict
+    time: float
+    steps: int
+
+
+class Hold(NamedTuple):
+    """How firmly two bodies touch at an instant.
+
+    Attributes
+    ----------
+    lasts : s, for which they certainly stay in each other; 0 where that is not proved
+    room : m, by which the gap may still widen; below 0 where it is too wide already
+    """
+
+    lasts: float
+    room: float
+
+
+class LastCrossing(NamedTuple):
+    """What is remembered of two surfaces from one instant to the next.
+
+    Attributes
+    ----------
+    leaves : of either tree, whose triangles crossed or were nearest; the roots at first
+    enough : s, for which the next crossing is to last
+    stack : (DEPTH, 2) int array, written
+    """
+
+    leaves: NodePair
+    enough: float
+    stack: Ints
+
+
+@kernel
+def end_of_hull_contact(
+    hull_a: SupportMap, hull_b: SupportMap, a: Motion, b: Motion, begin: float, end: float, tolerance: float
+) -> ContactEnd:
+    """When two hulls that touch at the beginning of a window come apart.
+
+    Parameters
+    ----------
+    hull_a, hull_b : SupportMap
+    a, b : Motion
+    begin, end : s, the window; the end may be inf
+    tolerance : m, the gap at which hulls count as touching
+
+    Returns
+    -------
+    ContactEnd
+        Until its time the gap was never wider than 5/4 of the tolerance; if the contact ends, it is wider than 9/8
+        then.
+    """
+    return end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)
+
+
+@kernel
+def end_of_mesh_contact(
+    shape_a: MeshShape, shape_b: MeshShape, a: Motion, b: Motion, begin: float, end: float, tolerance: float
+) -> ContactEnd:
+    """When two surfaces that touch at the beginning of a window come apart.
+
+    Parameters and answer as for `end_of_hull_contact`, with `MeshShape` for hulls. A surface inside the other does not
+    touch it.
+    """
+    memory = LastCrossing(ROOTS, 0.0, np.empty((DEPTH, 2), np.int64))
+    return end_of_contact(shape_a, shape_b, a, b, begin, end, tolerance, hold_of_surfaces, memory)
+
+
+@inner
+def end_of_contact(
+    shape_a: Shape,
+    shape_b: Shape,
+    a: Motion,
+    b: Motion,
+    begin: float,
+    end: float,
+    tolerance: float,
+    hold_of: Callable[[Shape, Shape, RelativeMotion, float, Memory], tuple[Hold, Memory]],
+    memory: Memory,
+) -> ContactEnd:
+    """The end of a contact of hulls or surfaces, given what shows how firmly they touch."""
+    near = ENDING_GAP * max(tolerance, 8.0 * MARGIN * (a.size + b.size))
+    a, b = seen_at(a, b, begin)
+    speed, rest, now = fastest_passing(a, b), end - begin, 0.0
+    for step in range(1, MOST_STEPS + 1):
+        hold, memory = hold_of(shape_a, shape_b, relative_motion(a, b, now), near, memory)
+        if hold.room < 0.0:
+            return ContactEnd(SearchVerdict.FOUND, begin + now, step)
+        wait = max(hold.lasts, max(hold.room, RESOLUTION / ENDING_GAP * near) / speed)
+        if now + wait >= rest:
+            return ContactEnd(SearchVerdict.NEVER, end, step)
+        if not now + wait > now:
+            return ContactEnd(SearchVerdict.STALLED, begin + now, step)
+        now += wait
+    return ContactEnd(SearchVerdict.STALLED, begin + now, MOST_STEPS)
+
+
+@kernel
+def hold_of_hulls(
+    hull_a: SupportMap, hull_b: SupportMap, seen: RelativeMotion, near: float, start: WarmStart
+) -> tuple[Hold, WarmStart]:
+    """How firmly two hulls touch, whose contact ends at a gap of `near`; and where to start next time."""
+    pose = seen.pose
+    margin = MARGIN * (pose.size_a + pose.size_b)
+    found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf)
+    if found.verdict != PairVerdict.TOUCHING:
+        return Hold(0.0, near - found.lower), found.warm_start
+    overlap = overlap_lasts(hull_a, hull_b, seen, found.warm_start)
+    return Hold(overlap.lasts, near), overlap.warm_start
+
+
+@kernel
+def hold_of_surfaces(
+    shape_a: MeshShape, shape_b: MeshShape, seen: RelativeMotion, near: float, last: LastCrossing
+) -> tuple[Hold, LastCrossing]:
+    """How firmly two surfaces touch, whose contact ends at a gap of `near`; and where to start next time."""
+    trees, stack = Trees(shape_a.tree, shape_b.tree), last.stack
+    start = last.leaves
+    for _ in range(LEVELS_UP):
+        start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
+    found = longest_crossing(trees, seen, start, last.enough, NEARBY_STEPS, stack)
+    if found.lasts < last.enough:
+        other = longest_crossing(trees, seen, ROOTS, last.enough, STEPS, stack)
+        if other.lasts > found.lasts or found.leaves.a < 0:
+            found = other
+    enough = LESS * found.lasts
+    if found.leaves.a >= 0:
+        return Hold(found.lasts, near), LastCrossing(found.leaves, enough, stack)
+    margin = MARGIN * (seen.pose.size_a + seen.pose.size_b)
+    apart = surface_distance(trees, seen.pose, near, margin, stack)
+    room = near - apart.gap if apart.gap < np.inf else -1.0
+    return Hold(found.lasts, room), LastCrossing(apart.leaves, enough, stack)

@@ -1,0 +1,89 @@
+"""What a process asks of the system for itself: a session, an end with its parent, silence, and limits. Linux only."""
+
+from __future__ import annotations
+
+import ctypes
+import faulthandler
+import math
+import os
+import resource
+import signal
+
+_PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_GET_CHILD_SUBREAPER = 1, 36, 37
+
+
+def isolate(output: int | None = None) -> None:
+    """Make of this process, which has just begun, a child that can be ended with all that it starts, and is not heard.
+
+    Parameters
+    ----------
+    output : descriptor of the file that takes what is printed; by default nothing does
+    """
+    if os.getsid(0) != os.getpid():
+        os.setsid()
+    die_with_parent()
+    adopt_orphans()  # so that what it starts stays among its descendants as long as it lives
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent answers Ctrl-C
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # not as the parent answers it
+    faulthandler.disable()  # it would print the stack of the process that this one was forked from
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nowhere, 0)
+    for stream in (1, 2):
+        os.dup2(nowhere if output is None else output, stream)
+    os.close(nowhere)
+
+
+def limit(*, memory: int | None = None, output: int | None = None, processor: float | None = None) -> None:
+    """Limit what this process may take from now on; a limit that it had already is not raised. No core is written.
+
+    Parameters
+    ----------
+    memory : B of address space, beyond what it has
+    output : B of any file that it writes; what goes beyond is an error of the writer
+    processor : s of CPU time, beyond what it has used; can be set again
+    """
+    _lower(resource.RLIMIT_CORE, 0)
+    if output is not None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        _lower(resource.RLIMIT_FSIZE, output)
+    if memory is not None:
+        _lower(resource.RLIMIT_AS, _address_space() + memory)
+    if processor is not None:
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        _lower(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + processor), for_good=False)
+
+
+def adopt_orphans() -> None:
+    """Let what the children of this process leave behind become its own children, so that it can be ended."""
+    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+
+
+def adopts_orphans() -> bool:
+    """Whether this process does."""
+    answer = ctypes.c_int(0)
+    _prctl(_PR_GET_CHILD_SUBREAPER, ctypes.byref(answer))
+    return bool(answer.value)
+
+
+def die_with_parent(wanted: bool = True) -> None:
+    """Ask the kernel to end this process when the thread that started it ends, however that happens; or no longer."""
+    _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL if wanted else 0)
+
+
+def _lower(what: int, most: int, *, for_good: bool = True) -> None:
+    _, hard = resource.getrlimit(what)
+    most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+    resource.setrlimit(what, (most, most if for_good else hard))
+
+
+def _address_space() -> int:
+    """B of address space that this process has now, or 0 where the system does not say."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as statm:
+            return int(statm.read().split()[0]) * resource.getpagesize()
+    except OSError:
+        return 0
+
+
+def _prctl(option: int, value: object) -> None:
+    ctypes.CDLL(None).prctl(option, value)

@@ -1,0 +1,1 @@
+"""Error against run time: what each method costs at each error, and what to use."""

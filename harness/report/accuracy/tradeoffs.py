@@ -1,0 +1,208 @@
+"""Error against run time: what each method costs at each setting of its knob, how far it is right, and who leads.
+
+A *curve* is a method at all settings of its knob: the time step or, of one that computes events, the tolerance. A
+*scene* is all that is not the method's. Errors below the checked error of the reference mean no more than that.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from harness.measure.noise import distinguishable
+from harness.measure.statistics import Exponent, Summary, fit_exponent
+from harness.report.point import MeasuredPoint
+from harness.report.ranking import times_worse
+from harness.report.series import Arrangement
+from harness.report.words import setting
+from harness.store.records import ExperimentRecord
+from harness.vocabulary import KNOBS, METHOD_LEAVES, MethodName
+
+COST, ERROR = "run_seconds", "time_error"
+# Of the reference's hits, how many a method may miss, and how many more it may report, to count as right.
+MOST_WRONG = 0.01
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+# At which of these a sentence says what to use, if anything reaches it.
+PREFERRED = 1e-4
+FEWEST_SETTINGS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A method at one setting of its knob."""
+
+    point: MeasuredPoint
+    knob: float
+    cost: Summary
+    error: float
+    trust: float
+
+    @property
+    def wrong(self) -> float:
+        """The larger of the shares of missed and of extra hits; 0 where hits are not matched."""
+        return max(
+            (share for name in ("missed_hits", "extra_hits") if (share := self.point.median(name)) > 0), default=0
+        )
+
+    @property
+    def sound(self) -> bool:
+        """Whether it sees the hits that there are, so that its error is one of all of them."""
+        return self.wrong <= MOST_WRONG
+
+    @property
+    def shown(self) -> float:
+        """Its error, or the reference's where it is smaller: more cannot be told."""
+        return max(self.error, self.trust)
+
+    def reaches(self, target: float) -> bool:
+        """Whether it counts as right to within the target."""
+        return self.sound and self.error <= target
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A method with its settings, the cheapest first; `label` tells it from the others of its scene."""
+
+    method: MethodName
+    label: str
+    style: int
+    settings: tuple[Setting, ...]
+
+    @property
+    def knob(self) -> str:
+        """The leaf that is set; "" where there is none, because the method is exact."""
+        return self.method.knob
+
+    def cheapest(self, target: float) -> Setting | None:
+        """Its cheapest setting that reaches an error."""
+        return next((found for found in self.settings if found.reaches(target)), None)
+
+    @property
+    def order(self) -> Exponent | None:
+        """The power of the time step with which the error falls; None of methods without one."""
+        if not self.method.stepped:
+            return None
+        fit = fit_exponent({found.knob: [found.error] for found in self.settings if found.sound})
+        return fit if fit.n >= 2 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Tradeoff:
+    """All methods on one scene of one experiment; `place` tells the scene from the others of the experiment."""
+
+    record: ExperimentRecord
+    place: str
+    curves: tuple[Curve, ...]
+    floor: float
+
+    @property
+    def settings(self) -> list[tuple[Curve, Setting]]:
+        """Every method at every setting."""
+        return [(curve, found) for curve in self.curves for found in curve.settings]
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether there is something to draw: a method at several settings."""
+        return any(len(curve.settings) >= FEWEST_SETTINGS for curve in self.curves)
+
+    @property
+    def front(self) -> list[Setting]:
+        """The settings that no other beats in both cost and error, the cheapest first: the Pareto front."""
+        best, found = math.inf, []
+        for candidate in sorted((s for _, s in self.settings if s.sound), key=lambda s: (s.cost.median, s.shown)):
+            if candidate.shown < best:
+                best = candidate.shown
+                found.append(candidate)
+        return found
+
+    def ranked(self, target: float) -> list[tuple[Curve, Setting]]:
+        """The methods that reach an error, each at its cheapest setting, the cheapest method first."""
+        found = [(curve, cheapest) for curve in self.curves if (cheapest := curve.cheapest(target)) is not None]
+        return sorted(found, key=lambda entry: entry[1].cost.median)
+
+    def lead(self, target: float) -> list[tuple[Curve, Setting, Summary | None]]:
+        """The same, each with how many times it costs what the first costs."""
+        ranked = self.ranked(target)
+        return [
+            (curve, found, None if place == 0 else times_worse(found.point, ranked[0][1].point, COST))
+            for place, (curve, found) in enumerate(ranked)
+        ]
+
+    def level(self, behind: Summary | None) -> bool:
+        """Whether a ratio to the first cannot be told from 1."""
+        return behind is None or not distinguishable(behind, self.floor)
+
+    @property
+    def decided(self) -> float | None:
+        """The error at which to say what to use: the preferred one, else the smallest that anything reaches."""
+        reached = [target for target in TARGETS if self.ranked(target)]
+        return PREFERRED if PREFERRED in reached else min(reached, default=None)
+
+
+def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeoff]:
+    """The trade-offs of an experiment that declares a reference, one a scene; none of any other."""
+    if not (record.specification.get("measure") or {}).get("reference"):
+        return []
+    scenes: dict[str, list[MeasuredPoint]] = {}
+    for point in arrangement.points:
+        scenes.setdefault(_key(point, lambda leaf: leaf not in METHOD_LEAVES and leaf not in _FOLLOWS), []).append(
+            point
+        )
+    leaves = _differing([points[0] for points in scenes.values()], lambda leaf: leaf not in METHOD_LEAVES)
+    found = []
+    for points in scenes.values():
+        curves = _curves(points)
+        if curves:
+            place = ", ".join(setting(leaf, points[0].parameters.get(leaf)) for leaf in leaves)
+            found.append(Tradeoff(record, place, curves, arrangement.floor(COST)))
+    return found
+
+
+# What follows from the mesh and the box: it tells no scenes apart that these do not.
+_FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
+
+
+def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
+    grouped: dict[str, list[MeasuredPoint]] = {}
+    for point in points:
+        grouped.setdefault(_key(point, _is_of_curve), []).append(point)
+    leaves = _differing([members[0] for members in grouped.values()], _is_of_curve)
+    made: list[Curve] = []
+    for members in grouped.values():
+        first = members[0].parameters
+        method = MethodName.of(first)
+        settings = [found for point in members if (found := _setting(point, method.knob or "tolerance")) is not None]
+        label = "\u00a0· ".join(setting(leaf, first.get(leaf)) for leaf in leaves) or method.algorithm
+        if settings:
+            ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
+            made.append(Curve(method, label, len(made), ordered))
+    return tuple(made)
+
+
+def _is_of_curve(leaf: str) -> bool:
+    """Whether a leaf tells one curve from another: it says which method, and does not set its knob."""
+    return leaf in METHOD_LEAVES and leaf not in KNOBS
+
+
+def _setting(point: MeasuredPoint, knob: str) -> Setting | None:
+    cost, error = point.summary(COST), point.median(ERROR)
+    if cost is None or not math.isfinite(error) or not cost.median > 0:
+        return None
+    trust = point.median("reference_error")
+    return Setting(point, float(point.parameters[knob]), cost, error, trust if math.isfinite(trust) else 0.0)
+
+
+def _differing(points: Sequence[MeasuredPoint], wanted: Any) -> list[str]:
+    leaves = [leaf for leaf in points[0].parameters if wanted(leaf) and leaf not in _FOLLOWS] if points else []
+    return [leaf for leaf in leaves if len({_text(point, leaf) for point in points}) > 1]
+
+
+def _key(point: MeasuredPoint, wanted: Any) -> str:
+    return json.dumps({leaf: value for leaf, value in point.parameters.items() if wanted(leaf)}, sort_keys=True)
+
+
+def _text(point: MeasuredPoint, leaf: str) -> str:
+    return json.dumps(point.parameters.get(leaf), sort_keys=True)

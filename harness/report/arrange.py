@@ -1,0 +1,135 @@
+"""How an experiment's points become series: which leaf goes along x, which make series, which a panel."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from harness.measure.noise import noise_floor
+from harness.report.point import MeasuredPoint
+from harness.report.series import Arrangement, Series, hashable, is_number
+from harness.report.words import setting
+from harness.store.records import ControlRecord, ExperimentRecord
+from harness.vocabulary import METHOD_LEAVES, MethodName
+
+MOST_IN_A_PANEL = 6
+DEFAULT_METRICS = ("pair_seconds", "box_seconds")
+
+
+def arrange(
+    record: ExperimentRecord,
+    runs: pd.DataFrame,
+    controls: Sequence[ControlRecord] = (),
+    wrong: Collection[MethodName] = (),
+) -> Arrangement:
+    """Arrange an experiment's points.
+
+    Parameters
+    ----------
+    record : of the experiment
+    runs : rows of the run table that belong to it
+    controls : of its points
+    wrong : methods that were proven wrong at its poses
+    """
+    by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
+    nothing = runs.iloc[:0]
+    points = [
+        MeasuredPoint(row, by_point.get(row.key, nothing), bool(wrong) and MethodName.of(row.parameters) in wrong)
+        for row in record.points
+    ]
+    report: Mapping[str, Any] = record.specification.get("report") or {}
+    swept = [leaf for leaf in record.specification.get("swept") or () if _spread(points, leaf) > 1]
+    x = _x_leaf(points, swept, report.get("x"))
+    others = [leaf for leaf in swept if leaf != x and not _follows(points, leaf, x)]
+    panel_leaf = _panel_leaf(points, others)
+    lines: dict[str, list[MeasuredPoint]] = {}
+    for point in points:
+        lines.setdefault(_key(point, others), []).append(point)
+    names = [leaf for leaf in others if leaf != panel_leaf]
+    styles: dict[str, int] = {}
+    series = []
+    for members in lines.values():
+        first = members[0].parameters
+        label = _label(first, names)
+        members = sorted(members, key=lambda point: _order(point.parameters.get(x))) if x else members
+        series.append(
+            Series(
+                label,
+                styles.setdefault(label, len(styles)),
+                setting(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
+                tuple(members),
+                tuple(point.parameters.get(x) for point in members) if x else tuple(None for _ in members),
+            )
+        )
+    values = {hashable(point.parameters.get(x)): point.parameters.get(x) for point in points} if x else {}
+    y = report.get("y") or DEFAULT_METRICS
+    return Arrangement(
+        x,
+        tuple(sorted(values.values(), key=_order)),
+        tuple(series),
+        panel_leaf,
+        (y,) if isinstance(y, str) else tuple(y),
+        *_floors(points, controls),
+    )
+
+
+def _floors(points: Sequence[MeasuredPoint], controls: Sequence[ControlRecord]) -> tuple[dict[str, float], int]:
+    """The noise floor of every clock that the controls report, and how many pairs there are."""
+    of_point = {point.row.key: point for point in points}
+    pairs: dict[str, list[tuple[float, float]]] = {}
+    for control in controls:
+        point = of_point.get(control.point)
+        for metric, value in control.metrics.items() if point else ():
+            first = point.by_place(metric).get((control.repeat, control.machine)) if point else None
+            if first is not None:
+                pairs.setdefault(metric, []).append((first, value))
+    floors = {metric: noise_floor(*zip(*found, strict=True)) for metric, found in pairs.items()}
+    known = {metric: floor for metric, floor in floors.items() if floor is not None}
+    return known, max(map(len, pairs.values()), default=0)
+
+
+def _x_leaf(points: Sequence[MeasuredPoint], swept: Sequence[str], wanted: str | None) -> str | None:
+    if wanted and _spread(points, wanted) > 0:
+        return wanted
+    numeric = [leaf for leaf in swept if all(is_number(point.parameters.get(leaf)) for point in points)]
+    # where no leaf is a number, what the method is tells more as series than along x
+    return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD_LEAVES] or swept), None)
+
+
+def _panel_leaf(points: Sequence[MeasuredPoint], others: Sequence[str]) -> str | None:
+    scene = [leaf for leaf in others if leaf not in METHOD_LEAVES]
+    mixed = 0 < len(scene) < len(others)  # methods are compared on the same scene
+    if len(others) < 2 or not (mixed or len({_key(point, others) for point in points}) > MOST_IN_A_PANEL):
+        return None
+    scene = scene or list(others)
+    return min(scene, key=lambda leaf: (_spread(points, leaf) > 8, -_spread(points, leaf)))
+
+
+def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
+    """The swept leaves' values; where none is left, what the method is."""
+    named = leaves or [leaf for leaf in ("backend", "algorithm") if leaf in parameters]
+    return "\u00a0· ".join(setting(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
+
+
+def _follows(points: Sequence[MeasuredPoint], leaf: str, x: str | None) -> bool:
+    """Whether x determines the leaf, as `faces` does the mesh: it is then no series of its own."""
+    if x is None:
+        return False
+    return len({_key(point, (x, leaf)) for point in points}) == _spread(points, x)
+
+
+def _spread(points: Sequence[MeasuredPoint], leaf: str) -> int:
+    """How many values the leaf takes."""
+    return len({_key(point, (leaf,)) for point in points if leaf in point.parameters})
+
+
+def _key(point: MeasuredPoint, leaves: Sequence[str]) -> str:
+    return json.dumps([point.parameters.get(leaf) for leaf in leaves], sort_keys=True)
+
+
+def _order(value: object) -> tuple[int, float]:
+    """Numbers by size; anything else keeps the order of the file (sorting is stable)."""
+    return (0, float(value)) if isinstance(value, int | float) and not isinstance(value, bool) else (1, 0.0)

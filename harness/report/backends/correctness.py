@@ -1,0 +1,64 @@
+"""How right a method is: what the comparisons of backends have found of it, and of no other method.
+
+A comparison says of each method that took part how many of its verdicts were held against another's, and which were
+proven wrong. Of a method that took part in none, nothing is known: another method of the same backend says nothing of
+it, for a broad phase can lose pairs that the backend would have seen.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from harness.store.records import ComparisonRecord
+from harness.vocabulary import MethodName
+
+
+@dataclass(frozen=True)
+class Correctness:
+    """What is known of every method that was compared.
+
+    Parameters
+    ----------
+    verdicts : by method, how many of its verdicts were held against another method's
+    wrong : by method, how often it was wrong outside of its tolerance, or failed
+    """
+
+    verdicts: Mapping[MethodName, int]
+    wrong: Mapping[MethodName, int]
+
+    def is_wrong(self, method: MethodName) -> bool:
+        """Whether it was proven wrong, or failed."""
+        return self.wrong.get(method, 0) > 0
+
+    def is_right(self, method: MethodName) -> bool:
+        """Whether it was compared, and never wrong."""
+        return self.verdicts.get(method, 0) > 0 and not self.is_wrong(method)
+
+
+def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
+    """What comparisons have found, method by method. A wrong verdict counts for every shape of its comparison."""
+    verdicts: Counter[MethodName] = Counter()
+    wrong: Counter[MethodName] = Counter()
+    for record in records:
+        tallies = record.document["pairs"]
+        for tally in tallies:
+            for name in tally["backends"]:
+                verdicts[MethodName.read(name, tally["shape"])] += tally["verdicts"]
+        for case in record.document["cases"] + record.document["shared"]:
+            for shape in sorted({tally["shape"] for tally in tallies}):
+                for name in case["wrong"].split(" and "):
+                    wrong[MethodName.read(name, shape)] += 1
+    return Correctness(verdicts, wrong)
+
+
+def newest(records: Sequence[ComparisonRecord]) -> list[ComparisonRecord]:
+    """Of several comparisons of the same two methods on an experiment the newest: names may be written two ways."""
+    found: dict[tuple[str, frozenset[str]], ComparisonRecord] = {}
+    for record in sorted(records, key=lambda record: record.made):
+        # a name is read the same on every shape
+        pipelines = frozenset(MethodName.read(name, "mesh").pipeline for name in record.backends)
+        found[record.experiment, pipelines] = record
+    kept = {id(record) for record in found.values()}
+    return [record for record in records if id(record) in kept]

@@ -1,0 +1,102 @@
+"""Axes: where a value lies on a drawing, round numbers, ticks, and texts cut to the room that they have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from matplotlib.ticker import MaxNLocator
+
+from harness.report.drawing import palette
+from harness.report.drawing.canvas import Canvas
+from harness.report.quantity import number, power_of_ten
+
+Form = Literal["wide", "narrow", "card"]
+"""Every drawing is made for desks and for phones: the lettering of one scaled to the other cannot be read."""
+
+FONT = 13.0  # px
+CHARACTER = 7.0  # px, generous for a proportional font of that size
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where a panel lies, px from the bottom left, and what its edges mean."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+    x_range: tuple[float, float]
+    y_range: tuple[float, float]
+    logarithmic: bool
+
+    def x(self, value: float) -> float:
+        """Place of a value of x, px."""
+        return self.left + _share(value, self.x_range, self.logarithmic) * (self.right - self.left)
+
+    def y(self, value: float) -> float:
+        """Place of a value of y, px."""
+        return self.bottom + _share(value, self.y_range, self.logarithmic) * (self.top - self.bottom)
+
+
+def x_ticks(canvas: Canvas, frame: Frame, ticks: Sequence[tuple[float, str]]) -> None:
+    places = [frame.x(value) for value, _ in ticks]
+    canvas.line(
+        [value for x in places for value in (x, x, math.nan)],
+        [value for _ in places for value in (frame.bottom, frame.top, math.nan)],
+        palette.GRID,
+        1.0,
+    )
+    for x, (_, text) in zip(places, ticks, strict=True):
+        canvas.text(x, frame.bottom - canvas.font - 5, text, horizontal="center")
+
+
+def y_ticks(canvas: Canvas, frame: Frame, most: int) -> None:
+    ticks = round_numbers(frame.y_range, frame.logarithmic, most)
+    places = [frame.y(value) for value in ticks]
+    canvas.line(
+        [value for _ in places for value in (frame.left, frame.right, math.nan)],
+        [value for y in places for value in (y, y, math.nan)],
+        palette.GRID,
+        1.0,
+    )
+    for y, value in zip(places, ticks, strict=True):
+        canvas.text(frame.left - 7, y, tick_text(value), horizontal="right", vertical="center")
+
+
+def round_numbers(bounds: tuple[float, float], logarithmic: bool, most: int) -> list[float]:
+    """Round numbers within bounds: 1, 2, 5 of every power of ten, or fewer of each where that is too many."""
+    low, high = bounds
+    if not logarithmic:
+        found = MaxNLocator(most - 1, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        return [float(value) for value in found if low <= value <= high]
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    inside: list[float] = []
+    for steps in ((1, 2, 5), (1, 3), (1,)):
+        values = [float(f"{step}e{power}") for power in powers for step in steps]
+        inside = [value for value in values if low <= value <= high]
+        if len(inside) <= most:
+            return inside
+    return inside[:: math.ceil(len(inside) / most)]
+
+
+def tick_text(value: float) -> str:
+    """A round number of an axis, without the zeros that three significant digits would add; far from 1, its power."""
+    if value > 0.0 and not 1e-3 <= value < 1e6 and math.isclose(power := math.log10(value), round(power)):
+        return power_of_ten(round(power))
+    return number(value) if value.is_integer() else f"{value:.4g}".replace("-", "−")
+
+
+def shorten(text: str, characters: float) -> str:
+    keep = max(2, int(characters))
+    return text if len(text) <= keep else f"{text[: keep - 1]}…"
+
+
+def _share(value: float, bounds: tuple[float, float], logarithmic: bool) -> float:
+    """Where a value lies between two bounds, 0 to 1."""
+    low, high = bounds
+    if logarithmic:
+        return math.log(value / low) / math.log(high / low)
+    return (value - low) / (high - low)

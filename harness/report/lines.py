@@ -1,0 +1,38 @@
+"""What figures of lines share: when axes are logarithmic, what they are called, and a panel in words."""
+
+from __future__ import annotations
+
+from harness.report.drawing.panels import Panel
+from harness.report.quantity import Scale, number
+
+# Below these ranges a logarithmic axis has no two round numbers on it.
+_LOG_X, _LOG_Y = 4.0, 2.5
+
+
+def spans_logarithms(panel: Panel) -> bool:
+    """Whether both axes are positive and span enough for logarithms."""
+    xs = [x for line in panel.lines for x in line.x]
+    ys = [y for line in panel.lines for y in (*line.y, *line.low)]
+    if not xs or min(xs) <= 0 or min(ys) <= 0:
+        return False
+    return max(xs) / min(xs) >= _LOG_X and max(ys) / min(ys) >= _LOG_Y
+
+
+def axis_title(metric: str, unit: Scale) -> str:
+    """A metric and the unit that its axis is in."""
+    return f"{metric}, {unit.symbol}" if unit.symbol else metric
+
+
+def in_words(panel: Panel) -> str:
+    """What the lines of a panel show, from end to end."""
+    said = []
+    for line in panel.lines:
+        if line.y:
+            ends = [
+                (panel.categories[int(x)] if panel.categories else panel.x_text(x)) for x in (line.x[0], line.x[-1])
+            ]
+            unit = panel.y_label.rpartition(", ")[2] if ", " in panel.y_label else ""
+            said.append(
+                f"{line.label}: {number(line.y[0])} {unit} at {ends[0]}, {number(line.y[-1])} {unit} at {ends[1]}."
+            )
+    return " ".join([f"{panel.title}:" if panel.title else "", *said]).replace("  ", " ").replace(" .", ".").strip()

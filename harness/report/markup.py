@@ -1,0 +1,50 @@
+"""HTML of the pages: from templates, and of a table or a figure by itself."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from harness.report.drawing import palette
+from harness.report.figure import Figure
+from harness.report.table import Table
+
+
+def render(template: str, **values: Any) -> Markup:
+    """A template of `harness/report/templates/`, filled in. What does not come as Markup is escaped."""
+    return Markup(_environment().get_template(template).render(**values))
+
+
+def section_html(identity: str, heading: str, *parts: Table | Figure | Markup | str) -> Markup:
+    """A section of a page: a heading, and below it tables, figures and paragraphs."""
+    show: Any = _environment().get_template("macros.html.j2").module
+    body = Markup("\n").join(_part(show, part) for part in parts)
+    return Markup('<section id="{}"><h2>{}</h2>\n{}\n</section>').format(identity, heading, body)
+
+
+def _part(show: Any, part: Table | Figure | Markup | str) -> Markup:
+    if isinstance(part, Table):
+        return Markup(show.table(part))
+    if isinstance(part, Figure):
+        return Markup(show.plot(part, f"figure-{part.name}"))
+    return part if isinstance(part, Markup) else Markup("<p>{}</p>").format(part)
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("harness.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=False
+    )
+    templates = files("harness.report") / "templates"
+    environment.globals |= {
+        "style": Markup((templates / "style.css").read_text(encoding="utf-8")),
+        "script": Markup((templates / "sort.js").read_text(encoding="utf-8")),
+        "light": Markup(palette.variables(dark=False)),
+        "dark": Markup(palette.variables(dark=True)),
+        "outlines": [palette.OUTLINES[marker] for marker in palette.MARKERS],
+    }
+    return environment

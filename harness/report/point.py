@@ -1,0 +1,106 @@
+"""A point of an experiment with what its runs have measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from harness.measure.statistics import Summary, summary
+from harness.store.records import PointRow
+from harness.vocabulary import METHOD_LEAVES
+
+BUSY_ABOVE = 1.2
+"""Elapsed over CPU time from which on the machine was busy with something else."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredPoint:
+    """One point of an experiment with all its runs, failed ones included.
+
+    Parameters
+    ----------
+    row : as it is stored
+    runs : a row a run, by repeat
+    proven_wrong : whether its method was proven wrong at poses of this experiment, or failed at them
+    """
+
+    row: PointRow
+    runs: pd.DataFrame
+    proven_wrong: bool = False
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        """Its leaves, and what is derived from them."""
+        return self.row.parameters
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """Those of its leaves that are not the method's."""
+        return {leaf: value for leaf, value in self.parameters.items() if leaf not in METHOD_LEAVES}
+
+    @cached_property
+    def good(self) -> pd.DataFrame:
+        """The runs that came to their end."""
+        ended: pd.DataFrame = self.runs[self.runs["status"] == "ok"]
+        return ended
+
+    def values(self, metric: str) -> npt.NDArray[np.float64]:
+        """The metric of every good run that reports it, by repeat."""
+        if metric not in self._values:
+            column = self.good[metric] if metric in self.good.columns else ()
+            values = np.asarray(column, dtype=float)
+            self._values[metric] = values[np.isfinite(values)]
+        return self._values[metric]
+
+    def by_place(self, metric: str) -> dict[tuple[int, str], float]:
+        """The metric of every good run that reports it, by repeat and machine.
+
+        To be paired with another point's: times of two machines are not compared.
+        """
+        if metric not in self.good.columns:
+            return {}
+        rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
+        return {(int(repeat), str(machine)): float(value) for repeat, machine, value in rows if math.isfinite(value)}
+
+    def summary(self, metric: str) -> Summary | None:
+        """Median and interval of the metric, None where no good run reports it."""
+        if metric not in self._summaries:
+            values = self.values(metric)
+            self._summaries[metric] = summary(values) if len(values) else None
+        return self._summaries[metric]
+
+    def median(self, metric: str) -> float:
+        """Median of the metric, nan where no good run reports it."""
+        found = self.summary(metric)
+        return found.median if found else math.nan
+
+    @property
+    def elapsed_ratio(self) -> float:
+        """Elapsed over CPU time of its runs, nan where it is not known."""
+        cpu = self.median("run_seconds")
+        return self.median("run_seconds_elapsed") / cpu if cpu > 0 else math.nan
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether a run's hits differ from the reference's."""
+        return any(bool((self.values(metric) > 0).any()) for metric in ("missed_hits", "extra_hits"))
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether its answers are known to be wrong: such a point is shown struck through, and never ranked."""
+        return self.proven_wrong or self.disagrees
+
+    @cached_property
+    def _values(self) -> dict[str, npt.NDArray[np.float64]]:
+        return {}
+
+    @cached_property
+    def _summaries(self) -> dict[str, Summary | None]:
+        return {}

@@ -1,0 +1,98 @@
+"""All that a report is made from: the results file, read once, and what follows from all of it together."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import pandas as pd
+
+from harness.report.accuracy.experiment import ExperimentAccuracy, accuracy_of
+from harness.report.backends.comparisons import Comparisons
+from harness.report.backends.correctness import correctness, newest
+from harness.report.experiment import ExperimentPage
+from harness.report.stability.matrix import Matrix, matrix
+from harness.report.sweeps.difference import Difference
+from harness.report.sweeps.page import newest_difference
+from harness.store.records import ExperimentRecord
+from harness.store.tables import comparisons, conditions, controls, experiments, machines, runs
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """What a results file holds; each part is read or made when it is first asked for."""
+
+    database: str | Path
+
+    @cached_property
+    def runs(self) -> pd.DataFrame:
+        """The run table of all experiments."""
+        return runs(self.database)
+
+    @cached_property
+    def records(self) -> list[ExperimentRecord]:
+        """Every experiment, by name."""
+        return experiments(self.database)
+
+    @cached_property
+    def pages(self) -> list[ExperimentPage]:
+        """The page of every experiment."""
+        taken: set[str] = set()
+        pages: list[ExperimentPage] = []
+        for record in self.records:
+            compared = [found for found in self.compared.records if found.experiment == record.name]
+            pages.append(
+                ExperimentPage(
+                    record,
+                    self.runs[self.runs["experiment"] == record.name],
+                    folder_of(record.name, taken),
+                    controls(self.database, [record.name]),
+                    conditions(self.database, record.name),
+                    correctness(compared).wrong,
+                    pages,
+                    self.database,
+                )
+            )
+        return pages
+
+    @cached_property
+    def compared(self) -> Comparisons:
+        """What was found of backends on the same poses."""
+        return Comparisons(newest(comparisons(self.database)))
+
+    @cached_property
+    def accuracy(self) -> list[ExperimentAccuracy]:
+        """The experiments that measure errors against a reference."""
+        return accuracy_of(self.pages)
+
+    @cached_property
+    def stability(self) -> Matrix | None:
+        """Stiff and extreme cases against methods."""
+        return matrix(self.pages)
+
+    @cached_property
+    def difference(self) -> Difference | None:
+        """How the newest sweep differs from the one before."""
+        return newest_difference(self.database)
+
+    @cached_property
+    def machines(self) -> Mapping[str, Mapping[str, Any]]:
+        """The facts of every machine that something shown ran on, by its fingerprint."""
+        used = {record.sweep.fingerprint for record in self.records}
+        used = used.union(*(set(page.runs["machine"]) for page in self.pages))
+        return {name: facts for name, facts in machines(self.database).items() if name in used}
+
+
+def folder_of(name: str, taken: set[str]) -> PurePosixPath:
+    """Where an experiment's page lies: its name, made safe to be a path, and told apart from those taken already."""
+    parts = [re.sub(r"[^\w.-]+", "-", part).strip(".-") for part in name.split("/")]
+    path = "/".join(part[:80] for part in parts if part) or "experiment"
+    unique, copy = path, 2
+    while unique.lower() in taken:
+        unique, copy = f"{path}-{copy}", copy + 1
+    taken.add(unique.lower())
+    return PurePosixPath("pages") / unique

@@ -1,0 +1,1 @@
+"""Sentences of the pages, each from the numbers that it tells."""

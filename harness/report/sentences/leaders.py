@@ -1,0 +1,71 @@
+"""Who is ahead, and by how much: at either end of x, in every panel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from markupsafe import Markup
+
+from harness.report.point import MeasuredPoint
+from harness.report.quantity import quantity
+from harness.report.ranking import Ranked, rank
+from harness.report.sentences.ratio import ratio_text
+from harness.report.series import Arrangement
+from harness.report.words import SCENE_LEAVES, is_noisy, metric_title, metric_unit, more_is_better, scene_text, setting
+
+
+def leader_sentences(arrangement: Arrangement) -> list[Markup]:
+    """A sentence for each scene on which methods can be ranked."""
+    found = []
+    methods = arrangement.methods
+    xs = arrangement.x_values or (None,)
+    many = len(arrangement.panels) > 2
+    # the far end first: that is where methods part
+    ends = xs[:4] if not arrangement.numeric else (xs[-1:] if many or len(xs) == 1 else (xs[-1], xs[0]))
+    metrics = [metric for metric in arrangement.metrics if is_noisy(metric)][: 1 if many else 2]
+    for metric in metrics:
+        for panel in arrangement.panels:
+            lines = [series for series in methods if series.panel == panel]
+            for x in ends if methods is arrangement.series else (None,):
+                ranked = rank(lines, x, metric, arrangement.floor(metric))
+                if len(ranked) > 1:
+                    found.append(_lead(arrangement, ranked, panel, x, metric))
+    return found
+
+
+def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
+    best, level = ranked[0], [entry for entry in ranked if entry.level]
+    where = Markup("For {}: ").format(_scene(arrangement, best.point, panel, x))
+    most = "highest" if more_is_better(metric) else "lowest"
+    value = quantity(best.median, metric_unit(metric))
+    if len(level) > 1:
+        names = " and ".join(entry.series.label for entry in level)
+        rank_text = "about" if len(level) == len(ranked) else f"the {most}, about"
+        text = Markup("{}{} cannot be told apart in {}, {} <strong>{}</strong>").format(
+            where, names, metric_title(metric), rank_text, value
+        )
+    else:
+        text = Markup("{}<strong>{}</strong> has the {} {}, <strong>{}</strong>").format(
+            where, best.series.label, most, metric_title(metric), value
+        )
+    behind = [entry for entry in ranked if not entry.level and entry.behind is not None]
+    if behind:
+        chosen = dict.fromkeys((behind[0].series.label, behind[-1].series.label))
+        said = [entry for entry in behind if entry.series.label in chosen]
+        parts = [
+            Markup("{} ahead of {}").format(ratio_text(entry.behind), entry.series.label)
+            for entry in said
+            if entry.behind is not None
+        ]
+        text += Markup("; that is ") + Markup(", ").join(parts)
+    return text + Markup(".")
+
+
+def _scene(arrangement: Arrangement, point: MeasuredPoint, panel: str, x: object) -> str:
+    """The scene of a point, and what else of it is swept."""
+    parts = [scene_text(point.parameters)]
+    if arrangement.x and x is not None and arrangement.x not in SCENE_LEAVES:
+        parts.append(setting(arrangement.x, x))
+    if panel and arrangement.panel_leaf not in SCENE_LEAVES:
+        parts.append(panel)
+    return ", ".join(parts)

@@ -1,0 +1,76 @@
+"""What to beware of in an experiment."""
+
+from __future__ import annotations
+
+from markupsafe import Markup
+
+from harness.measure.statistics import NOISY_ABOVE
+from harness.report.point import BUSY_ABOVE, MeasuredPoint
+from harness.report.quantity import number, plural
+from harness.report.series import Arrangement
+from harness.store.records import ExperimentRecord
+from harness.vocabulary import MethodName
+
+
+def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
+    found = []
+    said: dict[str, list[MeasuredPoint]] = {}
+    for point in arrangement.points:
+        for text in dict.fromkeys(point.row.plan.get("warnings") or ()):
+            said.setdefault(str(text), []).append(point)
+    for text, points in said.items():
+        whole = len(points) == len(arrangement.points)
+        whom = "every point" if whole else f"{number(len(points))} of {plural(len(arrangement.points), 'point')}"
+        found.append(Markup("<strong>{}</strong> ({}).").format(_capital(text.rstrip(".")), whom))
+    disagreeing = [point for point in arrangement.points if point.disagrees]
+    if disagreeing:
+        found.append(
+            Markup(
+                "<strong>{} hits that the reference does not, or misses some</strong>: struck through, never ranked."
+            ).format(f"{plural(len(disagreeing), 'point')} {'reports' if len(disagreeing) == 1 else 'report'}")
+        )
+    proven = dict.fromkeys(
+        MethodName.of(point.parameters).pipeline for point in arrangement.points if point.proven_wrong
+    )
+    if proven:
+        found.append(
+            Markup(
+                "<strong>{} proven wrong</strong> at poses of this experiment, or failed at them: never ranked."
+            ).format(f"{' and '.join(proven)} {'was' if len(proven) == 1 else 'were'}")
+        )
+    escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
+    if escaped:
+        found.append(Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point")))
+    if any("timing_grade" in point.good and not point.good["timing_grade"].all() for point in arrangement.points):
+        found.append(
+            Markup(
+                "<strong>Some runs are not timing-grade</strong>: they shared a machine with other runs. "
+                "Counts are exact, times are not."
+            )
+        )
+    asked = arrangement.metrics if (record.specification.get("report") or {}).get("y") else ()
+    unreported = [name for name in asked if not any(len(point.values(name)) for point in arrangement.points)]
+    if unreported and any(not point.good.empty for point in arrangement.points):
+        found.append(Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported)))
+    where = {machine for point in arrangement.points for machine in point.runs["machine"]}
+    if len(where) > 1:
+        found.append(
+            Markup("<strong>Runs come from {} machines</strong>: times compare only within one.").format(len(where))
+        )
+    busy = [point for point in arrangement.points if point.elapsed_ratio > BUSY_ABOVE]
+    if busy:
+        found.append(
+            Markup(
+                "The machine was busy: elapsed time is more than {} times the CPU time in {} of {}. "
+                "CPU time leads on this page."
+            ).format(f"{BUSY_ABOVE:g}", number(len(busy)), plural(len(arrangement.points), "point"))
+        )
+    if arrangement.noise == "noisy":
+        found.append(
+            Markup("Noisy: fewer than nine in ten medians are known to {}.").format(f"±{NOISY_ABOVE * 100:.0f} %")
+        )
+    return found
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,1 @@
+"""Which methods survive stiff and extreme cases, which degrade, fail or refuse."""

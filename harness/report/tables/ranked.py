@@ -1,0 +1,66 @@
+"""Series against series: a table a metric, with the best of each panel bold. None where there is only one series."""
+
+from __future__ import annotations
+
+from harness.report.quantity import scale
+from harness.report.ranking import Ranked, rank
+from harness.report.series import Arrangement
+from harness.report.table import Column, Table, measured, words
+from harness.report.tables.naming import heading, medians_text, panel_column, panel_entry
+from harness.report.words import is_ranked, metric_unit, setting
+
+# times worse than the best, from which each tint begins
+_TINTS = ((100.0, "t5"), (20.0, "t4"), (5.0, "t3"), (2.0, "t2"), (1.2, "t1"))
+
+
+def ranked_tables(arrangement: Arrangement) -> list[Table]:
+    """The tables of an experiment, series down and x across."""
+    if len(arrangement.series) < 2:
+        return []
+    measured_ones = [
+        metric for metric in arrangement.metrics if any(point.summary(metric) for point in arrangement.points)
+    ]
+    return [_table(arrangement, metric) for metric in measured_ones]
+
+
+def _table(arrangement: Arrangement, metric: str) -> Table:
+    xs = arrangement.x_values or (None,)
+    unit = scale([point.median(metric) for point in arrangement.points], metric_unit(metric))
+    ranked, rows = is_ranked(metric), []
+    for panel in arrangement.panels:
+        lines = [series for series in arrangement.series if series.panel == panel]
+        ranks = [
+            {entry.series.label: entry for entry in rank(lines, x, metric, arrangement.floor(metric))} if ranked else {}
+            for x in xs
+        ]
+        for series in lines:
+            row = [words(series.label, series.style), *panel_entry(arrangement, series.points[0])]
+            row += [
+                measured(series.at(x), metric, unit, _mark(places.get(series.label)))
+                for x, places in zip(xs, ranks, strict=True)
+            ]
+            rows.append(tuple(row))
+    columns = [Column("Series", numeric=False), *panel_column(arrangement)]
+    if arrangement.x is None:
+        columns.append(Column(metric, unit.symbol))
+    else:
+        columns += [Column(setting(arrangement.x, x)) for x in xs]
+    units = f", {unit.symbol}" if unit.symbol else ""
+    note = f"{metric}{units}, {medians_text(arrangement)}."
+    if ranked:
+        note += " Bold: best, or not to be told from it. Tint: times worse than the best."
+    if any(point.is_wrong for point in arrangement.points):
+        note += f" Struck through: {_why_struck(arrangement)}, and is not ranked."
+    return Table(heading(metric), note, tuple(columns), tuple(rows))
+
+
+def _why_struck(arrangement: Arrangement) -> str:
+    ways = (("disagrees with the reference", "disagrees"), ("was proven wrong by comparison", "proven_wrong"))
+    return " or ".join(text for text, how in ways if any(getattr(point, how) for point in arrangement.points))
+
+
+def _mark(entry: Ranked | None) -> str:
+    if entry is None or entry.level:
+        return "best" if entry else ""
+    behind = entry.behind.median if entry.behind else 1.0
+    return next((name for from_, name in _TINTS if behind >= from_), "")

@@ -1,0 +1,30 @@
+"""From a point of an experiment to what flies it: its method, and the law of its motion."""
+
+from __future__ import annotations
+
+from harness.experiment.experiment import Point
+from harness.methods.method import Method
+from harness.methods.registry import method_of
+from harness.motion.law import MotionLaw
+from harness.vocabulary import ALGORITHMS, MethodName
+
+
+def name_of(point: Point) -> MethodName:
+    """The name of the method of a point."""
+    return MethodName(point.engine.backend, point.engine.algorithm, point.scene.shape)
+
+
+def method_of_point(point: Point) -> Method:
+    """The method of a point, set as its engine says."""
+    return method_of(name_of(point), tolerance=point.engine.tolerance, forced=point.engine.stages)
+
+
+def law_of(point: Point) -> MotionLaw:
+    """How the bodies of a point move."""
+    motion = point.motion
+    return MotionLaw(motion.duration, motion.dt, motion.response, motion.restitution)
+
+
+def is_stepped(point: Point) -> bool:
+    """Whether the point looks at frames."""
+    return ALGORITHMS[point.engine.algorithm].stepped

@@ -1,0 +1,88 @@
+"""A stranger's backend can do whatever it likes when it is asked what it is: it costs its own line only."""
+
+import json
+import os
+import time
+
+import pytest
+
+from harness.backends import registry
+from harness.backends.statement import approximation, missing, statement
+from harness.cli.main import main
+from tests.runner.hostile_plugins import install
+
+WAYS = {
+    "exits": "importing it ended its process with exit code 3",
+    "exits without a word": "importing it ended its process with exit code 0",
+    "raises SystemExit": "SystemExit:",
+    "hangs with signals blocked": "importing it did not end within 4 s",
+    "crashes": "importing it ended its process with signal 11 (SIGSEGV)",
+    "closes descriptors": "importing it ended its process with exit code 1",
+    "is no Python": "SyntaxError: invalid syntax (odd_backend.py, line 3)",
+    "points to nothing": "AttributeError: module 'odd_backend' has no attribute 'Nothing'",
+    "points to no module": "ModuleNotFoundError: No module named 'there_is_no_such_module'",
+    "points to no name": "AttributeError: 'NoneType' object has no attribute 'group'",
+}
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """Installs a backend that goes wrong in a way, by the name of odd."""
+
+    def put(way):
+        install(tmp_path, way)
+        monkeypatch.syspath_prepend(str(tmp_path))
+        monkeypatch.chdir(tmp_path)
+
+    return put
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_why_a_strangers_backend_cannot_be_used_is_told_in_one_line(installed, way):
+    installed(way)
+    said = statement("odd", 4.0)
+    assert said.missing.startswith(WAYS[way])
+    assert "\n" not in said.missing
+    assert missing("odd") is None  # it is no extra: its runs will say it
+
+
+@pytest.mark.parametrize("way", ["goes elsewhere", "prints without end", "leaves a process"])
+def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, capfd):
+    installed(way)
+    here = os.getcwd()
+    said = statement("odd", 100.0)
+    assert (said.missing, said.tolerance) == (None, {"sphere": 1e-9, "hull": 1e-9, "mesh": 1e-9})
+    assert os.getcwd() == here
+    assert capfd.readouterr() == ("", "")
+
+
+def test_it_is_asked_once(installed):
+    installed("goes elsewhere")
+    first = statement("odd", 50.0)
+    began = time.process_time()
+    assert statement("odd", 50.0) is first
+    assert time.process_time() - began < 0.05
+
+
+def test_a_list_names_all_the_others_beside_one_that_exits(installed, capsys):
+    installed("exits")
+    assert main(["list", "--json"]) == 0
+    rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)["backends"]}
+    assert rows["fcl"]["missing"] is None
+    assert rows["odd"]["missing"] == WAYS["exits"]
+
+
+def test_a_plan_that_depends_on_it_is_refused_with_the_reason(installed, capsys):
+    installed("exits")
+    assert main(["plan", "odd.yaml"]) == 2
+    assert f'backend "odd" cannot be used: {WAYS["exits"]}' in capsys.readouterr().err
+    with pytest.raises(registry.BackendError):
+        approximation("odd", "sphere")
+
+
+def test_nobody_takes_a_name_of_ours(tmp_path, monkeypatch):
+    install(tmp_path, "exits")
+    (tmp_path / "odd-1.0.dist-info" / "entry_points.txt").write_text("[harness.backends]\nfcl = odd_backend:Plugin\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert registry.ours("fcl")
+    assert registry.create("fcl").name == "fcl"

@@ -1,0 +1,37 @@
+"""What `--save` writes shows the defect by itself, with no more bodies than it takes."""
+
+import json
+
+import pytest
+
+from harness.cli.main import main
+from harness.experiment.load import load
+
+EXPERIMENT = """
+title: Three
+scene:
+  shape: sphere
+  box: [9, 9, 9]
+  bodies:
+    - {position: [0.123456789, 0, 0]}
+    - {position: [3, 0, 0]}
+    - {position: [0.5, 0.3, 0]}
+    - {position: [0, 3, 0]}
+motion: {duration: 0, response: none}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "bodies"), [("swaps", 3), ("inflates", 2)])
+def test_a_saved_disagreement_is_found_again(name, bodies, defective, tmp_path, capsys):
+    path = tmp_path / "three.yaml"
+    text = EXPERIMENT if name == "swaps" else EXPERIMENT.replace("[3, 0, 0]", "[-0.8769, 0, 0]")
+    path.write_text(text)
+    assert main(["compare", str(path), "--backends", f"fcl,{defective(name)}", "--save", str(tmp_path), "--json"]) == 1
+    cases = json.loads(capsys.readouterr().out)["cases"]
+    files = {case["file"] for case in cases}
+    assert None not in files
+    for file in files:
+        assert len(load(file).points[0].scene.bodies) == bodies
+        assert main(["compare", file, "--json"]) == 1
+        assert json.loads(capsys.readouterr().out)["cases"][0]["wrong"] == name

@@ -1,0 +1,54 @@
+"""A copy of the program, into which a newcomer's files are written, and whose commands are run."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[1] / "harness"
+
+
+class ProgramCopy:
+    """The package in a folder of its own.
+
+    `touched` are the files that were added or changed since. Kernels of records cannot do without the compiler, which
+    takes half a minute; others run `compiled=False`.
+    """
+
+    def __init__(self, folder, compiled=True):
+        self.folder, self.touched = folder, []
+        self.environment = os.environ | {"PYTHONPATH": str(folder)} | ({} if compiled else {"NUMBA_DISABLE_JIT": "1"})
+        shutil.copytree(PACKAGE, folder / "harness", ignore=shutil.ignore_patterns("__pycache__"))
+
+    def add(self, path, text):
+        """A file that there was not."""
+        assert not (self.folder / path).exists()
+        (self.folder / path).write_text(textwrap.dedent(text))
+        self.touched.append(path)
+
+    def add_word(self, name, meaning):
+        """A line of `ALGORITHMS` in the vocabulary."""
+        file = self.folder / "harness/vocabulary.py"
+        head, start, rest = file.read_text().partition("ALGORITHMS: dict[str, AlgorithmWord] = {\n")
+        file.write_text(f'{head}{start}    "{name}": AlgorithmWord("{meaning}"),\n{rest}')
+        self.touched.append("harness/vocabulary.py")
+
+    def run(self, *words):
+        """What a command prints."""
+        ran = subprocess.run(
+            [sys.executable, "-m", "harness", *map(str, words)],
+            cwd=self.folder, env=self.environment, capture_output=True, text=True,
+        )  # fmt: skip
+        assert ran.returncode == 0, ran.stderr
+        return ran.stdout
+
+    def sweep(self, *experiments):
+        """The runs of experiment files, by the name of the experiment, in a fresh database."""
+        (self.folder / "results.db").unlink(missing_ok=True)
+        self.run("sweep", *experiments, "--db", "results.db", "--quiet")
+        runs = json.loads(self.run("export", "--db", "results.db", "--format", "json"))["runs"]
+        assert {run["status"] for run in runs} == {"ok"}
+        return {run["experiment"]: run for run in runs}

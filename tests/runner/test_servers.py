@@ -1,0 +1,127 @@
+"""A warm server that dies or is stopped costs nothing but time, and leaves nothing behind."""
+
+import resource
+import threading
+import time
+
+import psutil
+import pytest
+
+from harness.errors import InputError
+from harness.runner import servers as rooms
+from harness.runner.servers import Servers, task_of
+from tests.runner.conftest import install_plugin
+
+ONCE = """
+        if self.calls == 1 and not os.path.exists({note!r}):
+            open({note!r}, "w").close()
+            {does}
+        """
+
+
+@pytest.fixture
+def once(tmp_path, monkeypatch, spheres):
+    """A run whose backend does something the first time that it is asked, and the servers that run it."""
+
+    def make(does, timeout=20):
+        body = ONCE.format(note=str(tmp_path / "note"), does=does)
+        install_plugin(tmp_path / "plugins", monkeypatch, "odd", body)
+        return spheres(backend="odd", algorithm="native", timeout=timeout)
+
+    return make
+
+
+def run(servers, experiment):
+    return servers.run(*task_of(experiment, experiment.points[0], {}))
+
+
+@pytest.mark.parametrize("number", ["SIGKILL", "SIGTERM", "SIGSEGV"])
+def test_the_run_of_a_server_that_dies_is_done_by_another(once, number):
+    """Its own run does it to the server here; the second time it finds that it was done."""
+    with Servers() as servers:
+        report = run(servers, once(f"os.kill(os.getppid(), signal.{number}); time.sleep(60)"))
+        assert report.status == "ok"
+
+
+def test_what_the_runs_of_a_dead_server_started_is_ended(once, tmp_path):
+    note = tmp_path / "left"
+    leaves = f"""
+            if os.fork() == 0:
+                os.setsid()
+                open({str(note)!r}, "w").write(str(os.getpid()))
+                time.sleep(600)
+            while not os.path.exists({str(note)!r}) or not open({str(note)!r}).read(): time.sleep(0.01)
+            os.kill(os.getppid(), 9); time.sleep(60)"""
+    with Servers() as servers:
+        assert run(servers, once(leaves.strip())).status == "ok"
+        left = int(note.read_text())
+        assert not psutil.pid_exists(left) or psutil.Process(left).status() == psutil.STATUS_ZOMBIE
+
+
+def test_a_server_that_is_stopped_for_good_is_given_up(once, monkeypatch):
+    monkeypatch.setattr(rooms, "_BEYOND", 0.5)
+    with Servers() as servers:
+        began = time.monotonic()
+        report = run(servers, once("os.kill(os.getppid(), signal.SIGSTOP); time.sleep(60)", timeout=3))
+        assert report.status == "ok"
+        assert time.monotonic() - began > 3.5
+
+
+def test_a_server_whose_backend_kills_it_every_time_costs_two_tries(spheres, plugin):
+    plugin("murders", "os.kill(os.getppid(), 9); time.sleep(60)")
+    with Servers() as servers:
+        report = run(servers, spheres(backend="murders", algorithm="native"))
+        assert (report.status, report.reason) == ("crashed", 'the server of backend "murders" ended unexpectedly')
+        assert run(servers, spheres()).status == "ok"
+
+
+def test_interrupted_servers_do_not_try_again(spheres, plugin):
+    plugin("waits", "time.sleep(60)")
+    with Servers() as servers:
+
+        def interrupt():
+            while not any(server._ready for server in servers._servers.values()):
+                time.sleep(0.02)
+            time.sleep(0.3)
+            servers.interrupt()
+
+        thread = threading.Thread(target=interrupt)
+        thread.start()
+        assert run(servers, spheres(backend="waits", algorithm="native", timeout=50)).status == "crashed"
+        thread.join()
+        assert not servers._servers
+        assert run(servers, spheres()).status == "ok"
+
+
+def test_no_more_processes_is_an_error_that_says_what_is_kept(spheres, monkeypatch):
+    def refuse(*_, **__):
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr("harness.runner.servers.subprocess.Popen", refuse)
+    with Servers() as servers, pytest.raises(InputError, match="every finished run is kept"):
+        run(servers, spheres())
+
+
+def test_a_server_finds_the_modules_of_its_sweep_and_none_of_the_working_directory(spheres, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("random", "queue", "numpy", "harness"):
+        (tmp_path / f"{name}.py").write_text("raise RuntimeError('the wrong module')\n")
+    with Servers() as servers:
+        assert run(servers, spheres()).status == "ok"
+
+
+def test_limits_of_the_user_are_kept_and_no_fault(spheres, monkeypatch):
+    """As after `ulimit -f 100; ulimit -v 4000000`: a run lowers its limits, and cannot raise them."""
+    hard = {resource.RLIMIT_FSIZE: 100 * 1024, resource.RLIMIT_AS: 4_000_000 * 1024}
+    wanted = rooms.subprocess.Popen
+
+    def limited(*arguments, **options):
+        def lower():
+            for what, most in hard.items():
+                resource.setrlimit(what, (most, most))
+
+        return wanted(*arguments, preexec_fn=lower, **options)
+
+    monkeypatch.setattr("harness.runner.servers.subprocess.Popen", limited)
+    with Servers() as servers:
+        assert run(servers, spheres()).status == "ok"

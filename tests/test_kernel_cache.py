@@ -1,0 +1,81 @@
+"""A kernel is compiled anew where its file is missing, cut short, or cannot be kept."""
+
+import shutil
+import subprocess
+import sys
+
+import numba
+import pytest
+
+from harness.kernel_cache import forgiving, user_cache
+
+KERNEL = """
+import sys
+import numba
+numba.config.CACHE_DIR = sys.argv[1]
+from harness.kernel import kernel
+
+@kernel
+def twice(x):
+    return 2 * x
+
+print(twice(21), sum(twice.stats.cache_hits.values()))
+"""
+
+
+@pytest.fixture
+def run(tmp_path):
+    """Runs a program with one kernel; its answer, and whether the kernel came from its file."""
+    program, folder = tmp_path / "program.py", tmp_path / "kept"
+    program.write_text(KERNEL)
+
+    def once():
+        done = subprocess.run([sys.executable, program, folder], capture_output=True, text=True, check=True)
+        answer, hits = map(int, done.stdout.split())
+        assert answer == 42
+        return bool(hits)
+
+    assert not once()
+    assert once()
+    return once, folder
+
+
+def test_files_that_are_cut_short_are_made_again(run):
+    once, folder = run
+    for pattern, size in (("*.nbi", 0), ("*.nbc", 0), ("*.nbc", 500)):
+        for file in folder.rglob(pattern):
+            with file.open("r+b") as opened:
+                opened.truncate(size)
+        assert not once()
+        assert once()
+
+
+def test_files_that_cannot_be_written_are_done_without(run):
+    once, folder = run
+    for file in folder.rglob("*.nbi"):
+        file.unlink()
+        file.mkdir()
+    assert not once()
+    shutil.rmtree(folder)
+    folder.write_text("no folder")
+    once()  # wherever numba keeps it now
+
+
+def test_a_full_disk_costs_the_file_of_a_kernel_and_not_the_kernel():
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    function = numba.njit(cache=True)(lambda x: x + 1)
+    function._cache._cache_file.save = function._cache._cache_file.load = fail
+    assert forgiving(function)(1) == 2
+
+
+def test_a_user_without_a_home_has_no_cache(monkeypatch):
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    assert user_cache() is not None
+
+    def homeless():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr("harness.kernel_cache.Path.home", homeless)
+    assert user_cache() is None
