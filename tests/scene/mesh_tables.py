@@ -149,6 +149,7 @@ REFUSED = [
     ("a.off", "four dimensions", off(CUBE, "4OFF\n{} {} 0\n"), "other than three coordinates are not read"),
     ("a.off", "binary", b"OFF BINARY\n\0\0\0\x08", "this is binary OFF, which is not read"),
     ("a.off", "no counts", off(CUBE, "OFF\n{}\n"), "line 2: the numbers of vertices and of faces are missing"),
+    ("a.off", "faces without corners", b"OFF 1 2 0\n0 0 0\n0\n0\n", "all faces of the mesh are degenerate"),
     ("a.off", "words", b"once upon a time\n", 'no OFF file: line 1 begins with "once"'),
     ("a.off", "index beyond the vertices", off(CUBE).replace(b"4 3 2 1 0", b"4 3 2 1 8"), "line 12: 1 of the mesh"),
     ("a.glb", "a fan", glb(*glb_document(TRIANGLES, 6)), "it has triangle fans, which are not read"),
