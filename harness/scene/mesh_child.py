@@ -139,6 +139,8 @@ def _received(said: Mapping[str, Any]) -> Mesh | str:
 
 def _serve(answers: Channel, folder: Path, memory: int, timeout: float, paths: Sequence[Path]) -> None:
     """The child's side."""
+    import scipy.spatial  # noqa: F401  # which the first hull would load, within the limits of its file
+
     from harness.scene.mesh_file import read_mesh
 
     limit(memory=memory)

@@ -28,6 +28,7 @@ FLAT = 1e-9
 EXTENTS = (1e-100, 1e100)
 # A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of a coordinate.
 THIN = 2.0**-50
+NO_AREA = "all faces of the mesh are degenerate: it has no area"
 
 
 def read_mesh(path: Path | str) -> Mesh:
@@ -142,6 +143,8 @@ def _checked(mesh: PolygonMesh) -> PolygonMesh:
     vertices, corners, lengths = mesh.vertices, mesh.corners, mesh.lengths
     if len(lengths) == 0 or len(vertices) == 0:
         raise InputError("the mesh is empty: it has no faces")
+    if (lengths < 3).all():
+        raise InputError(NO_AREA)
     triangles = int(np.maximum(lengths - 2, 0).sum())
     if triangles > MAX_FACES or len(vertices) > MAX_VERTICES:
         raise InputError(f"the mesh has {triangles} faces and {len(vertices)} vertices; at most {MAX_FACES} are read")
@@ -183,7 +186,7 @@ def _thin(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np
     longest = np.linalg.norm([b - a, c - b, a - c], axis=2).max(axis=0)
     thin = twice_area <= THIN * np.abs(points).max() * longest
     if thin.all():
-        raise InputError("all faces of the mesh are degenerate: it has no area")
+        raise InputError(NO_AREA)
     return np.asarray(thin)
 
 

@@ -50,7 +50,7 @@ def weld(
     firsts, seconds = pairs[np.lexsort(pairs.T[::-1])].T
     owners, starts = np.unique(firsts, return_index=True)
     target = np.arange(len(vertices))
-    for owner, start, end in zip(owners, starts, [*starts[1:], len(firsts)], strict=True):
+    for owner, start, end in zip(owners, starts, np.append(starts, len(firsts))[1:], strict=True):
         if target[owner] == owner:
             near = seconds[start:end]
             target[near[target[near] == near]] = owner

@@ -6,6 +6,7 @@ import pytest
 import trimesh
 
 from harness.cli.main import main
+from harness.scene.formats import FORMATS
 from harness.scene.mesh_file import read_mesh
 
 
@@ -66,3 +67,40 @@ def test_simplify_keeps_the_extent():
     assert main(["mesh", "simplify", "ball.obj", "--faces", "400", "--out", "coarse.ply"]) == 0
     assert len(read_mesh("coarse.ply").faces) == 400
     assert read_mesh("coarse.ply").diameter == pytest.approx(40, rel=1e-7)
+
+
+def test_weld_closes_a_mesh_whose_vertices_lie_within_rounding_and_says_how_many(capsys):
+    ball = trimesh.creation.icosphere(2)
+    cracked = ball.triangles.reshape(-1, 3) + np.random.default_rng(259).uniform(-1e-9, 1e-9, (3 * len(ball.faces), 3))
+    rows = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in cracked.tolist()]
+    rows += [f"f {k} {k + 1} {k + 2}\n" for k in range(1, len(cracked), 3)]
+    Path("cracked.obj").write_text("".join(rows))
+    assert not read_mesh("cracked.obj").watertight
+    assert main(["mesh", "weld", "cracked.obj", "--within", "1e-8"]) == 0
+    assert f"{len(cracked) - len(ball.vertices)} vertices welded to another within 1e-08" in capsys.readouterr().out
+    welded = read_mesh("meshes/cracked-welded.ply")
+    assert welded.watertight
+    assert len(welded.vertices) == len(ball.vertices)
+    assert welded.diameter == pytest.approx(2, rel=1e-8)
+
+
+def test_weld_leaves_out_faces_that_lose_a_corner(capsys):
+    cube = trimesh.creation.box()
+    Path("cube.obj").write_text(cube.export(file_type="obj") + "\nv 0.5 0.5 0.4999\nf 7 8 9\n")
+    assert main(["mesh", "weld", "cube.obj", "--within", "1e-3", "--out", "cube.ply"]) == 0
+    assert "1 face with two corners so welded left out" in capsys.readouterr().out
+    assert len(read_mesh("cube.ply").faces) == 12
+
+
+@pytest.mark.parametrize("within", ["0", "-1", "nan", "inf", "9"])
+def test_weld_refuses_a_distance_that_is_none_of_rounding(within, capsys):
+    trimesh.creation.box().export("cube.ply")
+    assert main(["mesh", "weld", "cube.ply", f"--within={within}", "--out", "a.ply"]) == 2
+    assert not Path("a.ply").exists()
+
+
+def test_help_has_a_line_for_each_format_that_is_read(capsys):
+    with pytest.raises(SystemExit):
+        main(["mesh", "--help"])
+    said = capsys.readouterr().out
+    assert all(f"  .{form}  " in said for form in FORMATS)

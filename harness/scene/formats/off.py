@@ -33,14 +33,15 @@ def read_off(content: bytes) -> PolygonMesh:
     """
     if BINARY.match(content):
         raise InputError("this is binary OFF, which is not read; save it as text")
-    return _Reader(as_text(content) + b"\n").read()
+    return _Reader(as_text(content)).read()
 
 
 class _Reader:
     """Reads the lines of a file, blocks of them at once where they hold nothing but numbers."""
 
     def __init__(self, text: bytes) -> None:
-        self._text = text
+        self._text = text + b"\n"
+        self._whole = text.endswith(b"\n")  # if not, the last line may have been cut
         self._place, self._line = 0, 0  # where the next line begins, and the number of the line before it
         self._coordinates, self._corners, self._lengths = array("d"), array("q"), array("q")
         self._vertex_lines, self._face_lines = array("q"), array("q")
@@ -77,7 +78,14 @@ class _Reader:
                 self._place, self._line, done = alike.end(), self._line + lines, done + lines
                 continue
             for _ in range(min(max(1, lines), count - done)):
-                read_line(self._words(f"{name} {done + 1} of {count}"))
+                element = f"{name} {done + 1} of {count}"
+                words = self._words(element)
+                try:
+                    read_line(words)
+                except InputError:
+                    if self._whole or self._text[self._place :].strip():
+                        raise
+                    raise InputError(f"line {self._line}: the file ends in {element}") from None
                 done += 1
 
     def _words(self, where: str) -> list[bytes]:

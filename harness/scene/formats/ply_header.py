@@ -69,9 +69,9 @@ def read_header(content: bytes) -> Header:
     InputError
         If it is none; with the line at fault.
     """
-    if encoding := wide_encoding(content):
-        raise InputError(f"this is {encoding} text; save it as UTF-8")
     start = re.match(rb"(?:\xef\xbb\xbf)?ply[ \t]*(\r\n|\n|\r)", content)
+    if not start and (encoding := wide_encoding(content)):
+        raise InputError(f"this is {encoding} text; save it as UTF-8")
     if not start:
         raise InputError("this is no PLY file: its first line is not ply")
     newline = b"\r" if start[1] == b"\r" else b"\n"

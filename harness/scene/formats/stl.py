@@ -117,7 +117,12 @@ class _TextReader:
             words = line.split()
             place = 0
             while place < len(words):
-                place = self._step(words, place, number)
+                try:
+                    place = self._step(words, place, number)
+                except InputError:
+                    if text.count(b"\n", 0, len(text.rstrip())) + 1 > number or b"endsolid" in text[-200:].lower():
+                        raise
+                    break  # the last line, in the middle of a face
         if self._facet:
             raise InputError(f"line {number}: the file ends in face {len(self._lengths) + 1}")
         if not self._lengths:
