@@ -1,115 +1,15 @@
-"""Uniform grid: which bodies are close enough to touch.
+"""The grid as a scheme: uniform, or hierarchical where bodies have different sizes."""
 
-Cells are as large as the largest body, so that a body meets at most its own and the 26 neighbouring cells. Bodies of
-very different sizes crowd such cells; `HierarchicalGrid` keeps them apart.
-"""
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from harness.arrays import Floats, Pairs
-from harness.broadphase import cells
-from harness.broadphase.pairs import checked_positions, checked_radii
+from harness.arrays import Floats
+from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.broadphase.scheme import Scheme
-from harness.kernel import kernel
+from harness.broadphase.uniform_grid import UniformGrid
 from harness.scene.box import Box
 
-CELLS_PER_BODY = 8
-"""Cells that all levels together may have for each body; in a dilute scene cells grow until they keep to it."""
+
+def make(radii: Floats, box: Box, size_classes: bool) -> UniformGrid:
+    """The grid for bodies of these radii (n,) in m: hierarchical if size classes are kept apart."""
+    return (HierarchicalGrid if size_classes else UniformGrid)(radii, box)
 
 
-class Grid:
-    """Cells sized to the largest body, rebuilt every frame in O(n). See `BroadPhase`.
-
-    Parameters
-    ----------
-    radii : (n,) array, m
-    box : Box
-        Where the bodies are expected. Those outside are found all the same, if many of them more slowly.
-    """
-
-    def __init__(self, radii: ArrayLike, box: Box) -> None:
-        self.radii = checked_radii(radii)
-        self.pair_tests = 0
-        count = len(self.radii)
-        level = self.size_classes()
-        members = np.argsort(level, kind="stable")
-        levels = plan_levels(self.radii[members], level[members])
-        self._half = np.array(box.half, np.float64)
-        self._cells = cells.Cells(
-            radii=self.radii,
-            members=members.astype(np.int32),
-            levels=levels,
-            start=np.empty(int(levels["budget"].sum()) + 1, np.int32),
-            cell_of=np.empty(count, np.int32),
-            slots=np.empty((count, 2), np.int32),
-            spheres=np.zeros((count, 4)),
-        )
-        self._keys = np.empty(count + 1, np.int64)
-
-    def size_classes(self) -> NDArray[np.int64]:
-        """(n,) int array: the size class of each body, 0 the largest. Here all bodies are in one."""
-        return np.zeros(len(self.radii), np.int64)
-
-    def close_pairs(self, positions: ArrayLike) -> Pairs:
-        """Pairs of bodies whose bounding spheres touch, as `BroadPhase.close_pairs` defines them."""
-        positions = checked_positions(positions, len(self.radii))
-        found = cells.close_pairs(positions, self._half, self._cells, self._keys)
-        if found.close > len(self._keys):  # count first, then make room: rare, as the room is kept
-            self._keys = np.empty(found.close + found.close // 2, np.int64)
-            cells.close_pairs(positions, self._half, self._cells, self._keys)
-        self.pair_tests += found.tests
-        keys = self._keys[: found.close]
-        keys.sort()
-        return unpack(keys)
-
-    @property
-    def cell_count(self) -> int:
-        """Cells of all levels in the last frame, the empty ones at the borders included."""
-        return int(self._cells.levels["cells"].sum())
-
-    def cells_per_body(self) -> tuple[int, float]:
-        """How many cells of its own level a body's bounding cube overlapped in the last frame: the most, and the mean.
-
-        At most 8, as a cell is never smaller than a body. The lattice ends with the outermost centres, and what sticks
-        out is in no cell.
-        """
-        overlapped = cells.count_overlapped(self._cells.levels, self._cells.spheres)
-        return overlapped.most, overlapped.total / max(1, len(self.radii))
-
-
-def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
-    """(levels,) of LEVEL from the bodies in the order of their level: how large, whose slots, how many cells.
-
-    Half of the cells are shared out by population. The other half equally, or the lattice of a few large bodies among
-    many small ones would be so coarse that every small one is tested with every large one.
-    """
-    count = len(level)
-    _, begin = np.unique(level, return_index=True)
-    begin = begin if count else np.zeros(1, np.int64)
-    levels = np.zeros(len(begin), cells.LEVEL)
-    levels["begin"] = begin
-    levels["end"] = np.append(begin[1:], count)
-    levels["reach"] = np.maximum.reduceat(radii, begin) if count else 1.0
-    share = (levels["end"] - levels["begin"] + count / len(levels)) / 2
-    levels["budget"] = 8 + CELLS_PER_BODY * share  # a lattice of one cell needs 8, with its empty border
-    return levels
-
-
-@kernel
-def unpack(keys: cells.Keys) -> Pairs:
-    """(k, 2) int array of i and j from i << 32 | j."""
-    pairs = np.empty((len(keys), 2), np.int64)
-    for k in range(len(keys)):
-        pairs[k, 0] = keys[k] >> 32
-        pairs[k, 1] = keys[k] & 0xFFFFFFFF
-    return pairs
-
-
-def _make(radii: Floats, box: Box, size_classes: bool) -> Grid:
-    from harness.broadphase.hierarchical_grid import HierarchicalGrid  # which is a grid itself
-
-    return (HierarchicalGrid if size_classes else Grid)(radii, box)
-
-
-SCHEME = Scheme("a grid of cells", _make, "a level of cells for each factor of three")
+SCHEME = Scheme("a grid of cells", make, "a level of cells for each factor of three")

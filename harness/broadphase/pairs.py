@@ -9,10 +9,12 @@ from math import sqrt
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
 from harness.kernel import kernel
+
+Keys = NDArray[np.int64]  # (k,) i << 32 | j of pairs
 
 # Squares of radii, and of distances as small, must neither overflow nor vanish.
 SMALLEST, LARGEST = 1e-150, 1e150
@@ -87,3 +89,13 @@ def checked_positions(positions: ArrayLike, count: int) -> Floats:
     if checked.shape != (count, 3):
         raise ValueError(f"positions must have the shape ({count}, 3), not {checked.shape}")
     return checked
+
+
+@kernel
+def unpack(keys: Keys) -> Pairs:
+    """(k, 2) int array of i and j from i << 32 | j."""
+    pairs = np.empty((len(keys), 2), np.int64)
+    for k in range(len(keys)):
+        pairs[k, 0] = keys[k] >> 32
+        pairs[k, 1] = keys[k] & 0xFFFFFFFF
+    return pairs

@@ -21,14 +21,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
 from harness.broadphase.cells import span
-from harness.broadphase.grid import unpack
-from harness.broadphase.pairs import SMALLEST, checked_positions, checked_radii, require_finite, touching
+from harness.broadphase.pairs import (
+    SMALLEST,
+    Keys,
+    checked_positions,
+    checked_radii,
+    require_finite,
+    touching,
+    unpack,
+)
 from harness.broadphase.scheme import Scheme
 from harness.kernel import inner, kernel
 from harness.scene.box import Box
 
 Order = NDArray[np.int32]
-Keys = NDArray[np.int64]
 Blocks = NDArray[np.void]
 Block = Any  # one record of Blocks, whose fields mypy does not know
 

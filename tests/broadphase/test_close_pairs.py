@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.broadphase.brute_force import BruteForce
-from harness.broadphase.grid import Grid
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.broadphase.pairs import BroadPhase
+from harness.broadphase.uniform_grid import UniformGrid
 from harness.scene.box import Box
 
 METHODS = ("brute force", "grid", "hierarchical grid")
@@ -19,7 +19,7 @@ def make(method, radii, half=(1.0, 1.0, 1.0)) -> BroadPhase:
     box = Box(np.array(half, float))
     return {
         "brute force": lambda: BruteForce(radii),
-        "grid": lambda: Grid(radii, box),
+        "grid": lambda: UniformGrid(radii, box),
         "hierarchical grid": lambda: HierarchicalGrid(radii, box),
     }[method]()
 

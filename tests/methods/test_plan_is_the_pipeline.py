@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from harness.broadphase.grid import Grid
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
+from harness.broadphase.uniform_grid import UniformGrid
 from harness.methods import culled, narrow_phase, observer, penetration, predictive, stepping
 from harness.methods.stages import Plan, Stage, StageError
 from harness.motion import kinematics
@@ -168,7 +168,7 @@ def test_the_grid_of_a_plan_is_the_one_that_is_made():
     method = method_for(scene, "grid")
     plan = method.plan(scene, law())
     assert type(method.broad_phase(scene, plan)) is HierarchicalGrid
-    assert type(method.broad_phase(scene, flipped(plan, "size_classes"))) is Grid
+    assert type(method.broad_phase(scene, flipped(plan, "size_classes"))) is UniformGrid
 
 
 @pytest.mark.parametrize(

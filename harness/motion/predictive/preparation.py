@@ -80,7 +80,7 @@ def unscheduled(n: int) -> EventQueue:
     return EventQueue(times=times, time_bits=times.view(np.int64), winners=winners)
 
 
-def empty_lists(motions: Records, neighbours: NeighbourSearch) -> Lists:
+def empty_lists(motions: Records, neighbours: int) -> Lists:
     """Neighbour lists with nobody in them, anchored where the spheres are; none at all for another search."""
     n = len(motions) if neighbours == NeighbourSearch.LISTS else 0
     return Lists(anchors=motions["position"][:n].copy(), members=aligned(n, NEIGHBOURS))

@@ -62,8 +62,8 @@ def make_rules(start: InitialState, response: str, restitution: float, search: s
     events_per_base = EVENTS_PER_BASE_NONE if answer == ResponseCode.NONE else EVENTS_PER_BASE
     return Rules(
         half_box=start.half_box,
-        neighbours=neighbours,
-        response=answer,
+        neighbours=neighbours.value,
+        response=answer.value,
         restitution=restitution,
         skin=2.0 * SKIN * mean if neighbours == NeighbourSearch.LISTS else 0.0,
         contact_time=CONTACT_TIME * radius_time,

@@ -232,6 +232,6 @@ class Simulation:
         self._world = world._replace(
             cells=empty_grids(self._start.half_box, self._start.radii, 0.0),
             lists=empty_lists(motions, NeighbourSearch.CELLS),
-            rules=world.rules._replace(neighbours=NeighbourSearch.CELLS, skin=0.0),
+            rules=world.rules._replace(neighbours=NeighbourSearch.CELLS.value, skin=0.0),
         )
         populate(self._world, False)

@@ -10,8 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.motion.predictive.codes import NeighbourSearch, ResponseCode
-
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Indices = NDArray[np.uint32]  # unsigned: the compiled code then need not ask whether an index counts from the end
@@ -171,8 +169,8 @@ class Rules(NamedTuple):
     """What stays the same during a run."""
 
     half_box: Floats  # (3,) m
-    neighbours: NeighbourSearch
-    response: ResponseCode
+    neighbours: int  # of `NeighbourSearch`; members of it would have numba look at the whole world anew at every call
+    response: int  # of `ResponseCode`
     restitution: float
     skin: float  # m: how much farther than touching neighbours of a list may be
     contact_time: float  # s: a pair hit this soon after another is answered elastically

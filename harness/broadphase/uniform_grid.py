@@ -1,0 +1,95 @@
+"""Uniform grid: which bodies are close enough to touch.
+
+Cells are as large as the largest body, so that a body meets at most its own and the 26 neighbouring cells. Bodies of
+very different sizes crowd such cells; `HierarchicalGrid` keeps them apart.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from harness.arrays import Floats, Pairs
+from harness.broadphase import cells
+from harness.broadphase.pairs import checked_positions, checked_radii, unpack
+from harness.scene.box import Box
+
+CELLS_PER_BODY = 8
+"""Cells that all levels together may have for each body; in a dilute scene cells grow until they keep to it."""
+
+
+class UniformGrid:
+    """Cells sized to the largest body, rebuilt every frame in O(n). See `BroadPhase`.
+
+    Parameters
+    ----------
+    radii : (n,) array, m
+    box : Box
+        Where the bodies are expected. Those outside are found all the same, if many of them more slowly.
+    """
+
+    def __init__(self, radii: ArrayLike, box: Box) -> None:
+        self.radii = checked_radii(radii)
+        self.pair_tests = 0
+        count = len(self.radii)
+        level = self.size_classes()
+        members = np.argsort(level, kind="stable")
+        levels = plan_levels(self.radii[members], level[members])
+        self._half = np.array(box.half, np.float64)
+        self._arrays: cells.Arrays = (
+            self.radii,
+            members.astype(np.int32),
+            levels,
+            np.empty(int(levels["budget"].sum()) + 1, np.int32),
+            np.empty(count, np.int32),
+            np.empty((count, 2), np.int32),
+            np.zeros((count, 4)),
+        )
+        self._cells = cells.Cells(*self._arrays)
+        self._keys = np.empty(count + 1, np.int64)
+
+    def size_classes(self) -> NDArray[np.int64]:
+        """(n,) int array: the size class of each body, 0 the largest. Here all bodies are in one."""
+        return np.zeros(len(self.radii), np.int64)
+
+    def close_pairs(self, positions: ArrayLike) -> Pairs:
+        """Pairs of bodies whose bounding spheres touch, as `BroadPhase.close_pairs` defines them."""
+        positions = checked_positions(positions, len(self.radii))
+        close, tests = cells.close_pairs(positions, self._half, self._arrays, self._keys)
+        if close > len(self._keys):  # count first, then make room: rare, as the room is kept
+            self._keys = np.empty(close + close // 2, np.int64)
+            cells.close_pairs(positions, self._half, self._arrays, self._keys)
+        self.pair_tests += tests
+        keys = self._keys[:close]
+        keys.sort()
+        return unpack(keys)
+
+    @property
+    def cell_count(self) -> int:
+        """Cells of all levels in the last frame, the empty ones at the borders included."""
+        return int(self._cells.levels["cells"].sum())
+
+    def cells_per_body(self) -> tuple[int, float]:
+        """How many cells of its own level a body's bounding cube overlapped in the last frame: the most, and the mean.
+
+        At most 8, as a cell is never smaller than a body. The lattice ends with the outermost centres, and what sticks
+        out is in no cell.
+        """
+        overlapped = cells.count_overlapped(self._cells.levels, self._cells.spheres)
+        return overlapped.most, overlapped.total / max(1, len(self.radii))
+
+
+def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
+    """(levels,) of LEVEL from the bodies in the order of their level: how large, whose slots, how many cells.
+
+    Half of the cells are shared out by population. The other half equally, or the lattice of a few large bodies among
+    many small ones would be so coarse that every small one is tested with every large one.
+    """
+    count = len(level)
+    _, begin = np.unique(level, return_index=True)
+    begin = begin if count else np.zeros(1, np.int64)
+    levels = np.zeros(len(begin), cells.LEVEL)
+    levels["begin"] = begin
+    levels["end"] = np.append(begin[1:], count)
+    levels["reach"] = np.maximum.reduceat(radii, begin) if count else 1.0
+    share = (levels["end"] - levels["begin"] + count / len(levels)) / 2
+    levels["budget"] = 8 + CELLS_PER_BODY * share  # a lattice of one cell needs 8, with its empty border
+    return levels
