@@ -37,7 +37,7 @@ from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
 # How often the state of a run is measured outside of its clock; events are the same to the bit however often.
-LOOKS = 5
+SAMPLES = 5
 
 _FIXED = "event-driven motion cannot do otherwise"
 
@@ -142,22 +142,22 @@ class EventDriven:
             With the counters, the run's clock and the errors of a predictive run.
         """
         scene, plan, bodies = self._scene, self._plan, self._scene.bodies
-        watch = _Watch(scene, plan, law)
+        samples = _Samples(scene, plan, law)
         course = CourseLog(bodies.positions, bodies.velocities) if plan.keeps("recording") else None
         clock = Clock("run_seconds")
         simulation = self._start(law, record=traced or course is not None)
         clock.lap("run_seconds")
-        for look in range(1, LOOKS + 1):
+        for sample in range(1, SAMPLES + 1):
             clock.start()
-            until = law.duration * look / LOOKS
+            until = law.duration * sample / SAMPLES
             if course is not None:
                 course.follow(simulation, until)
             else:
                 simulation.advance(until)
             clock.lap("run_seconds")
-            watch.look(simulation, until)
+            samples.take(simulation, until)
         counted = simulation.counters
-        metrics: dict[str, float] = {**counted, **clock.metrics(), **watch.metrics(simulation)}
+        metrics: dict[str, float] = {**counted, **clock.metrics(), **samples.metrics(simulation)}
         for kind in ("", "_elapsed"):
             if metrics[f"run_seconds{kind}"] > 0.0:
                 metrics[f"simulated_per_second{kind}"] = law.duration / metrics[f"run_seconds{kind}"]
@@ -187,7 +187,7 @@ class EventDriven:
         )
 
 
-class _Watch:
+class _Samples:
     """Measures a run at a few times, outside of its clock: what it conserves, escaped bodies, the depth of overlaps."""
 
     def __init__(self, scene: Scene, plan: Plan, law: MotionLaw) -> None:
@@ -198,7 +198,7 @@ class _Watch:
         self._outside = np.zeros(len(scene.bodies), np.bool_)
         self._begun = False
 
-    def look(self, simulation: Simulation, time: float) -> None:
+    def take(self, simulation: Simulation, time: float) -> None:
         """Measure the state at a time, s."""
         positions, velocities = simulation.positions, simulation.velocities
         require_finite_state(positions, velocities, simulation.time)
@@ -207,8 +207,8 @@ class _Watch:
             self._conservation.observe_momentum(velocities, simulation.wall_impulses)
         self._outside |= (np.abs(positions) > self._half).any(axis=1)
         if self._depth is not None:
-            self._depth.look(positions, time)
-        if not self._begun:  # from the first look on, the start is forgotten
+            self._depth.measure(positions, time)
+        if not self._begun:  # from the first sample on, the start is forgotten
             self._kinetics.begin(simulation)
             self._begun = True
 
@@ -235,7 +235,7 @@ class _Depth:
         self._grid = HierarchicalGrid(scene.bodies.radii, scene.box)
         self._penetration = Penetration(scene)
 
-    def look(self, positions: Floats, time: float) -> None:
+    def measure(self, positions: Floats, time: float) -> None:
         pairs = self._grid.close_pairs(positions)
         self._trajectory.move_to(time)
         self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))

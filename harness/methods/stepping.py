@@ -89,7 +89,7 @@ class Stepping:
         )
         course = CourseLog(trajectory.positions, trajectory.velocities) if recorded and response else None
         steps = _steps(scene, plan, trajectory, detector, response)
-        look = _look(observer, trajectory, response, course)
+        observe = _observation(observer, trajectory, response, course)
         clock = Clock(*PHASES)
 
         def fly(number: int) -> _Frame:
@@ -98,7 +98,7 @@ class Stepping:
             for phase, step in steps:
                 step(frame)
                 clock.lap(phase)
-            look(frame)
+            observe(frame)
             return frame
 
         if plan.keeps("motion"):
@@ -177,7 +177,7 @@ def _steps(
     return [*steps, ("response_seconds", respond), ("box_seconds", walls_and_redirect)]
 
 
-def _look(
+def _observation(
     observer: Observer, trajectory: Trajectory, response: CollisionResponse | None, course: CourseLog | None
 ) -> Callable[[_Frame], None]:
     """What observes a frame after it, outside of all clocks."""
@@ -194,14 +194,14 @@ def _look(
     return passing
 
 
-def _recorded(look: Callable[[_Frame], None], course: CourseLog, trajectory: Trajectory) -> Callable[[_Frame], None]:
+def _recorded(observe: Callable[[_Frame], None], course: CourseLog, trajectory: Trajectory) -> Callable[[_Frame], None]:
     """The same, and the legs that begin in the frame are kept."""
 
-    def look_and_keep(frame: _Frame) -> None:
-        look(frame)
+    def observe_and_keep(frame: _Frame) -> None:
+        observe(frame)
         course.turn(frame.time, trajectory.positions, trajectory.velocities)
 
-    return look_and_keep
+    return observe_and_keep
 
 
 def _every_frame(fly: Callable[[int], _Frame], frames: int, detector: Detector | None) -> dict[str, float]:

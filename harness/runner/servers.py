@@ -231,7 +231,7 @@ class _Server:
         """End the process and all that it has started; how it ended, if it did so by itself."""
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=1)
-        how = _told(self._process.poll())
+        how = _ending(self._process.poll())
         self._process.kill()
         self._process.wait()
         deadline = monotonic() + _LAST
@@ -243,7 +243,7 @@ class _Server:
         return how
 
 
-def _told(code: int | None) -> str:
+def _ending(code: int | None) -> str:
     if code is None:
         return "did not come to its end"
     return f"ended its process with {Ending(code)}"
