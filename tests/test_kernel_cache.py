@@ -40,6 +40,7 @@ def run(tmp_path):
     return once, folder
 
 
+@pytest.mark.slow
 def test_files_that_are_cut_short_are_made_again(run):
     once, folder = run
     for pattern, size in (("*.nbi", 0), ("*.nbc", 0), ("*.nbc", 500)):
@@ -50,6 +51,7 @@ def test_files_that_are_cut_short_are_made_again(run):
         assert once()
 
 
+@pytest.mark.slow
 def test_files_that_cannot_be_written_are_done_without(run):
     once, folder = run
     for file in folder.rglob("*.nbi"):

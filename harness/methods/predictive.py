@@ -29,7 +29,7 @@ from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.motion.predictive.initial import check
-from harness.motion.predictive.rules import choose_search
+from harness.motion.predictive.rules import LASTING, choose_search
 from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form, needs_its_surface
@@ -64,6 +64,7 @@ class Predictive(Method):
             take("wall_search", False, "response is none: the box folds the path of each bounding sphere exactly")
         elif solid:
             take("wall_search", True, "the support function of the hull, once a bounding sphere meets the wall")
+        _lasting_contacts(law, decisions)
         decide_penetration(scene, decisions)
         decide_recording(recorded, decisions)
         return decisions.finish()
@@ -100,6 +101,21 @@ def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
         take("mesh_search", True, "surfaces are advanced to their contact when their hulls meet, not before")
     else:
         take("mesh_search", False, "the mesh is convex, its own hull, and no body can be inside an equal one")
+
+
+def _lasting_contacts(law: MotionLaw, decisions: Decisions) -> None:
+    """Whether an inelastic collapse, infinitely many hits in a finite time, must be kept from happening."""
+    loses = law.response == "elastic" and law.restitution < 1.0
+    if loses:
+        why = (
+            f"restitution {law.restitution:g}: after {LASTING} hits in a row, each within the contact time of the "
+            "last, a body's hits lose no more energy (TC model)"
+        )
+        fixed = "the flight might never get past an inelastic collapse"
+    else:
+        why = "hits lose no energy: nothing can collapse"
+        fixed = why
+    decisions.take("lasting_contacts", loses, why, fixed=fixed)
 
 
 def _neighbour_lists(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:

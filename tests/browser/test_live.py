@@ -69,6 +69,7 @@ def test_what_cannot_be_run_is_said_in_a_sentence_and_the_scene_stays(visit, add
     assert page.text_content("#now") == before
 
 
+@pytest.mark.slow
 def test_a_page_elsewhere_cannot_ask_through_a_name_of_its_own(address):
     request = urllib.request.Request(f"{address}run?count=3", headers={"Host": "elsewhere.example"})
     with pytest.raises(urllib.error.HTTPError, match="403"):

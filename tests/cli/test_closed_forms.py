@@ -51,6 +51,7 @@ def test_head_on_four_apart_meets_at_one_and_a_half_and_swaps(trace):
 
 
 @pytest.mark.parametrize("offset", [0.3, 1 - 1e-9, 1 - 1e-12, 1 + 1e-12, 1 + 1e-9])
+@pytest.mark.slow
 def test_an_oblique_pass_hits_where_the_formula_says_if_it_is_inside_the_sum_of_radii(trace, offset):
     found = pairs(trace([body(0, 0), body(-5, 2, offset)], 10.0, box=HUGE))
     if offset > 1:

@@ -64,6 +64,7 @@ def test_a_metric_is_made_where_an_experiment_names_it_also_of_points_that_were_
     assert "at most 0.740" in refused["reason"]
 
 
+@pytest.mark.slow
 def test_a_refusal_that_is_not_expected_fails_the_sweep(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "refused.yaml").write_text(REFUSED.replace("where: {count: 23}", "where: {count: 2}"))

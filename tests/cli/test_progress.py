@@ -45,6 +45,7 @@ def test_without_a_terminal_there_are_plain_lines_and_failures_as_they_happen(sw
     assert table[1].split()[:4] == ["p", "2", "1", "rejected"]
 
 
+@pytest.mark.slow
 def test_quiet_says_only_what_goes_wrong_and_verbose_a_line_a_run(swept):
     quiet = swept("--quiet")
     assert [line.split(":")[0] for line in quiet.err.splitlines()] == ["p (count 500, repeat 0)"]

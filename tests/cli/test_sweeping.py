@@ -82,6 +82,7 @@ def test_a_failed_run_is_a_row_with_its_reason_and_the_exit_code_says_so(small, 
     assert main(["sweep", "small.yaml", "--set", "count=500", "--set", "box=[4, 4, 4]"]) == 1  # and it stays so
 
 
+@pytest.mark.slow
 def test_an_expectation_that_fails_is_named_and_exits_1(small, capsys):
     text = EXPERIMENT.replace("energy_drift, at_most: 1.0e-12", "frames, at_most: 59")
     (small / "small.yaml").write_text(text)
@@ -117,6 +118,7 @@ def test_trace_prints_one_json_document(small, capsys):
     assert len(document["final"]["position"]) == len(document["final"]["velocity"]) == 12
 
 
+@pytest.mark.slow
 def test_plan_says_what_is_left_out_and_warns_of_approximations(small, capsys):
     settings = ["--set", "shape=mesh", "--set", "backend=pybullet", "--set", "algorithm=native", "--set", "spin=0"]
     assert main(["plan", "small.yaml", *settings]) == 0

@@ -74,6 +74,7 @@ def test_a_read_only_file_is_refused(trouble, capsys):
     assert "read-only" in refused(capsys, trouble)
 
 
+@pytest.mark.slow
 def test_a_locked_file_is_refused_after_a_while(trouble, capsys, monkeypatch):
     monkeypatch.setattr(store, "BUSY_SECONDS", 0.2)
     holder = sqlite3.connect(swept(trouble))

@@ -44,6 +44,7 @@ def test_only_runs_points_with_these_values_and_the_rest_later(which, capsys):
     assert len(tables.experiments("results/results.db")[0].points) == 6  # what was left out was still listed
 
 
+@pytest.mark.slow
 def test_only_can_choose_by_derived_parameters(which, capsys):
     assert "12 runs done" in sweep(capsys, "--only", "faces=0")
 

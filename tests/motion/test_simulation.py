@@ -1,5 +1,7 @@
 """Overlaps, walls, ties, bursts, sampling, recording: the rules that keep a run right."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -172,6 +174,34 @@ def test_inelastic_collapse_is_guarded_and_counted():
         assert simulation.advance(100.0, max_events=10_000)
         assert (simulation.counters["guarded_hits"] > 0) == collapses
         assert simulation.counters["stalled_events"] == 0
+
+
+@pytest.mark.parametrize("restitution", ["9/10", "1/2", "1/5", "2/25"])
+def test_hits_at_one_moment_lose_what_they_must(restitution):
+    """Two balls meet a third between them at the same time: hits one after another, in exact fractions."""
+    e = Fraction(restitution)
+    speeds = [Fraction(1), Fraction(0), Fraction(-1)]
+    hits = 0
+    while speeds != sorted(speeds):
+        i = hits % 2
+        kick = (1 + e) * (speeds[i] - speeds[i + 1]) / 2
+        speeds[i] -= kick
+        speeds[i + 1] += kick
+        hits += 1
+    simulation = Simulation(
+        [(-2, 0, 0), (0, 0, 0), (2, 0, 0)],
+        [(1, 0, 0), (0, 0, 0), (-1, 0, 0)],
+        [0.5] * 3,
+        [1] * 3,
+        [10.0] * 3,
+        "elastic",
+        float(e),
+    )
+    assert simulation.advance(2.0)
+    assert simulation.counters["pair_hits"] == hits
+    assert simulation.counters["guarded_hits"] == 0
+    assert simulation.velocities[:, 0] == pytest.approx([float(speed) for speed in speeds], rel=1e-14)
+    assert simulation.kinetic_energy == pytest.approx(float(sum(speed**2 for speed in speeds) / 2), rel=1e-14)
 
 
 def test_an_inelastic_gas_cools_and_balances_its_books():

@@ -66,6 +66,7 @@ def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
     assert set(links) <= pages.keys()
 
 
+@pytest.mark.slow
 def test_pages_are_well_formed_with_unique_ids_that_references_meet(pages):
     for name, html in html_of(pages).items():
         outline = Outline()

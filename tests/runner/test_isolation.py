@@ -60,6 +60,7 @@ def test_each_way_to_go_wrong_has_its_status(spheres, servers, count):
     assert run_one(spheres(backend="bad", algorithm="native", count=20, box=ROOMY), servers).status == "ok"
 
 
+@pytest.mark.slow
 def test_what_a_backend_prints_goes_to_its_row_and_nowhere_else(spheres, servers, capfd):
     report = run_one(spheres(backend="bad", algorithm="native", count=LOUD, box=ROOMY), servers)
     assert "more" in report.stderr
@@ -96,6 +97,7 @@ def test_everything_a_run_started_ends_with_it(spheres, plugin, tmp_path, hiding
         assert ended(int(note.read_text()))
 
 
+@pytest.mark.slow
 def test_what_a_backend_writes_into_any_file_it_holds_harms_no_other_run(spheres, servers):
     report = run_one(spheres(backend="bad", algorithm="native", count=SCRIBBLES, box=ROOMY), servers)
     assert (report.status, report.reason) == ("crashed", "its report was garbage")

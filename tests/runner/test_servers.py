@@ -36,6 +36,7 @@ def run(servers, experiment):
 
 
 @pytest.mark.parametrize("number", ["SIGKILL", "SIGTERM", "SIGSEGV"])
+@pytest.mark.slow
 def test_the_run_of_a_server_that_dies_is_done_by_another(once, number):
     """Its own run does it to the server here; the second time it finds that it was done."""
     with Servers() as servers:
@@ -43,6 +44,7 @@ def test_the_run_of_a_server_that_dies_is_done_by_another(once, number):
         assert report.status == "ok"
 
 
+@pytest.mark.slow
 def test_what_the_runs_of_a_dead_server_started_is_ended(once, tmp_path):
     note = tmp_path / "left"
     leaves = f"""
@@ -58,6 +60,7 @@ def test_what_the_runs_of_a_dead_server_started_is_ended(once, tmp_path):
         assert not psutil.pid_exists(left) or psutil.Process(left).status() == psutil.STATUS_ZOMBIE
 
 
+@pytest.mark.slow
 def test_a_server_that_is_stopped_for_good_is_given_up(once, monkeypatch):
     monkeypatch.setattr(rooms, "_BEYOND", 0.5)
     with Servers() as servers:
@@ -67,6 +70,7 @@ def test_a_server_that_is_stopped_for_good_is_given_up(once, monkeypatch):
         assert time.monotonic() - began > 3.5
 
 
+@pytest.mark.slow
 def test_a_server_whose_backend_kills_it_every_time_costs_two_tries(spheres, plugin):
     plugin("murders", "os.kill(os.getppid(), 9); time.sleep(60)")
     with Servers() as servers:
@@ -75,6 +79,7 @@ def test_a_server_whose_backend_kills_it_every_time_costs_two_tries(spheres, plu
         assert run(servers, spheres()).status == "ok"
 
 
+@pytest.mark.slow
 def test_interrupted_servers_do_not_try_again(spheres, plugin):
     plugin("waits", "time.sleep(60)")
     with Servers() as servers:
@@ -102,6 +107,7 @@ def test_no_more_processes_is_an_error_that_says_what_is_kept(spheres, monkeypat
         run(servers, spheres())
 
 
+@pytest.mark.slow
 def test_a_server_finds_the_modules_of_its_sweep_and_none_of_the_working_directory(spheres, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("random", "queue", "numpy", "harness"):
@@ -110,6 +116,7 @@ def test_a_server_finds_the_modules_of_its_sweep_and_none_of_the_working_directo
         assert run(servers, spheres()).status == "ok"
 
 
+@pytest.mark.slow
 def test_limits_of_the_user_are_kept_and_no_fault(spheres, monkeypatch):
     """As after `ulimit -f 100; ulimit -v 4000000`: a run lowers its limits, and cannot raise them."""
     hard = {resource.RLIMIT_FSIZE: 100 * 1024, resource.RLIMIT_AS: 4_000_000 * 1024}

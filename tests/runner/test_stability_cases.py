@@ -61,6 +61,7 @@ def test_all_that_a_case_expects_holds(name):
         assert verdict.verdict == "holds", verdict.statement
 
 
+@pytest.mark.slow
 def test_stepped_runs_fall_short_where_they_are_known_to():
     """A case whose claims hold for every method would not be stiff."""
     for name in ("far-away", "grazing-between-frames", "rattling", "tight-box"):

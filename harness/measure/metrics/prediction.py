@@ -11,7 +11,7 @@ METRICS = (
     counter("cell_crossings", "passages of a body from cell to cell", tabulated=False),
     counter("list_renewals", "neighbour lists made anew", tabulated=False),
     counter(
-        "guarded_hits", "inelastic hits answered elastically, because they came too soon after another", tabulated=False
+        "guarded_hits", "inelastic hits answered elastically, as part of a lasting contact (TC model)", tabulated=False
     ),
     counter(
         "stalled_events", "times a body was made to wait, because too many events came in no time", tabulated=False

@@ -57,7 +57,7 @@ def shift_times(world: World) -> None:
         world.spheres.motions[k].time -= base
         world.spheres.schedule[k].last_hit -= base
         world.spheres.schedule[k].pair_time -= base
-        world.spheres.last_contacts[k] -= base
+        world.spheres.contacts[k].last -= base
         world.cells.renewals[k] -= base
         queue.times[leaf + k] -= base
     whole = clock.epoch + base

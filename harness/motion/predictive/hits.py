@@ -40,12 +40,10 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     if rules.response == ResponseCode.ELASTIC:
         restitution = rules.restitution
         if restitution < 1.0:
-            # TC model: a contact so soon after another belongs to the same lasting contact, and no more energy is lost
-            if now - max(spheres.last_contacts[i], spheres.last_contacts[j]) < rules.contact_time:
+            row = max(count_in_row(world, i, now), count_in_row(world, j, now))
+            if row >= rules.lasting:  # TC model: in a lasting contact no more energy is lost
                 restitution = 1.0
                 counts.guarded_hits += 1
-            spheres.last_contacts[i] = now
-            spheres.last_contacts[j] = now
         hit = answer_elastic(motions[i], motions[j], schedule[i].mass, schedule[j].mass, restitution)
         virial = hit.virial
         if hit.lost > 0.0:
@@ -59,6 +57,18 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     counts.pair_hits += 1
     record(world, now, PAIR_EVENT, schedule[i].label, schedule[j].label, -1)
     return True
+
+
+@step
+def count_in_row(world: World, k: int, now: float) -> int:
+    """How many pair hits of sphere k before this one came within the contact time of each other, and of this one."""
+    contact = world.spheres.contacts[k]
+    if now - contact.last < world.rules.contact_time:
+        contact.row += 1
+    else:
+        contact.row = 0
+    contact.last = now
+    return int(contact.row)
 
 
 @step

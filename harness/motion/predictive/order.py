@@ -45,7 +45,7 @@ def reorder(world: World) -> None:
     moved_to = np.empty(count, dtype=np.int64)
     moved_to[order] = np.arange(count)
     leaves = queue.times[len(queue.times) // 2 :][:count]
-    for array in (spheres.motions, spheres.schedule, spheres.last_contacts, cells.renewals, leaves):
+    for array in (spheres.motions, spheres.schedule, spheres.contacts, cells.renewals, leaves):
         array[:] = array[order]
     partners = spheres.schedule["partner"]
     partners[:] = np.where(partners >= 0, moved_to[partners], -1)

@@ -11,6 +11,7 @@ from harness.motion.predictive.order import along_curve
 from harness.motion.predictive.state import (
     CANDIDATES,
     CLOCK,
+    CONTACT,
     COUNTS,
     EVENT,
     MOTION,
@@ -59,7 +60,7 @@ def prepare(start: InitialState, rules: Rules, record: bool) -> World:
     schedule["label"] = order
     schedule["size_class"] = size_classes(start.radii)[order]
     return World(
-        spheres=Spheres(motions, schedule, last_contacts=np.full(n, -np.inf)),
+        spheres=Spheres(motions, schedule, contacts=no_contacts(n)),
         queue=unscheduled(n),
         cells=empty_grids(start.half_box, start.radii, rules.skin),
         lists=empty_lists(motions, rules.neighbours),
@@ -84,6 +85,13 @@ def empty_lists(motions: Records, neighbours: int) -> Lists:
     """Neighbour lists with nobody in them, anchored where the spheres are; none at all for another search."""
     n = len(motions) if neighbours == NeighbourSearch.LISTS else 0
     return Lists(anchors=motions["position"][:n].copy(), members=aligned(n, NEIGHBOURS))
+
+
+def no_contacts(n: int) -> Records:
+    """n spheres that have not hit anything."""
+    contacts = np.zeros(n, CONTACT)
+    contacts["last"] = -np.inf
+    return contacts
 
 
 def no_totals() -> Totals:

@@ -105,6 +105,9 @@ SUMS = np.dtype(
 # Absolute time is (epoch + epoch_rest) + now.
 CLOCK = np.dtype([("epoch", np.float64), ("epoch_rest", np.float64), ("now", np.float64)], align=True)
 
+# A sphere's last pair hit, s, and how many before it came within the contact time of each other.
+CONTACT = np.dtype([("last", np.float64), ("row", np.int64)], align=True)
+
 # The onset of touching that was recorded last (response none).
 ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align=True)
 
@@ -133,12 +136,12 @@ class Spheres(NamedTuple):
 
     motions : (n,) of MOTION
     schedule : (n,) of SCHEDULE
-    last_contacts : (n,) s, time of the last pair hit
+    contacts : (n,) of CONTACT
     """
 
     motions: Records
     schedule: Records
-    last_contacts: Floats
+    contacts: Records
 
 
 class EventQueue(NamedTuple):
@@ -173,7 +176,8 @@ class Rules(NamedTuple):
     response: int  # of `ResponseCode`
     restitution: float
     skin: float  # m: how much farther than touching neighbours of a list may be
-    contact_time: float  # s: a pair hit this soon after another is answered elastically
+    contact_time: float  # s: pair hits that follow each other faster than this may be one lasting contact
+    lasting: int  # from so many of them on they are, and are answered elastically
     burst_window: float  # s: a pair hit of a sphere this soon after another belongs to one collision burst
     cooldown: float  # s: what a sphere waits before a hit beyond the limit
     burst_limit: int  # hits of one burst that a sphere may have

@@ -41,6 +41,15 @@ def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> lis
     escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
     if escaped:
         found.append(Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point")))
+    guarded = [point for point in arrangement.points if (point.values("guarded_hits") > 0).any()]
+    if guarded:
+        most = max(point.values("guarded_hits").max() for point in guarded)
+        found.append(
+            Markup(
+                "<strong>Inelastic collapse</strong> in {}: after a long row of hits in no time, up to {} more were "
+                "answered elastically (TC model), so that the flight could go on."
+            ).format(plural(len(guarded), "point"), number(most))
+        )
     if any("timing_grade" in point.good and not point.good["timing_grade"].all() for point in arrangement.points):
         found.append(
             Markup(
