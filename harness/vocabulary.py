@@ -34,21 +34,25 @@ class AlgorithmWord:
     meaning : which questions it asks, and when
     stepped : whether it steps from frame to frame, `dt` apart; else it computes events, as exactly as `tolerance` says
     own : whether the pairs are found by this program; else by the backend's own broad phase
+    kernels : whether kernels of this program decide on the pairs, and the backend only where these cannot
     """
 
     meaning: str
     stepped: bool = True
     own: bool = True
+    kernels: bool = False
 
 
 ALGORITHMS: dict[str, AlgorithmWord] = {
     "brute-force": AlgorithmWord("every pair, every frame"),
-    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies"),
-    "sap": AlgorithmWord("pairs from bodies sorted along an axis, each compared with those its interval overlaps"),
+    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies", kernels=True),
+    "sap": AlgorithmWord(
+        "pairs from bodies sorted along an axis, each compared with those its interval overlaps", kernels=True
+    ),
     "tree": AlgorithmWord("pairs from a dynamic tree of axis-aligned boxes"),
     "native": AlgorithmWord("the backend's own broad phase", own=False),
     "predictive": AlgorithmWord(
-        "from event to event: the next collision of every body is computed, not stepped to", stepped=False
+        "from event to event: the next collision of every body is computed, not stepped to", stepped=False, kernels=True
     ),
 }
 
@@ -134,6 +138,22 @@ class MethodName(NamedTuple):
         """The shortest name that `read` understands: "fcl" for every pair put to FCL, else as `pipeline`."""
         alone = MethodName.read(self.backend, self.shape, self.query)
         return self.backend if alone == self else self.pipeline
+
+    @property
+    def label(self) -> str:
+        """What it is called on the pages, after who does the work: kernels of this program, or the library.
+
+        >>> [MethodName.read(name, "hull").label for name in ("fcl/grid", "fcl/tree", "pybullet")]
+        ['own grid', 'fcl tree', 'pybullet']
+        """
+        if self.kernels:
+            return f"own {self.algorithm}"
+        return f"{self.backend} {self.algorithm}" if self._word.own else self.backend
+
+    @property
+    def kernels(self) -> bool:
+        """Whether kernels of this program decide on the pairs, and the backend only where these cannot."""
+        return self._word.kernels
 
     @property
     def stepped(self) -> bool:

@@ -9,7 +9,8 @@ from typing import Any
 import pandas as pd
 
 from harness.measure.noise import noise_floor
-from harness.report.point import MeasuredPoint
+from harness.report.methods import method_label
+from harness.report.point import METHOD, MeasuredPoint
 from harness.report.series import Arrangement, Series, hashable, is_number
 from harness.report.words import leaf_label
 from harness.store.records import ControlRecord, ExperimentRecord
@@ -54,17 +55,17 @@ def arrange(
     for members in lines.values():
         first = members[0].parameters
         label = _label(first, names)
-        members = sorted(members, key=lambda point: _order(point.parameters.get(x))) if x else members
+        members = sorted(members, key=lambda point: _order(point.value(x))) if x else members
         series.append(
             Series(
                 label,
                 styles.setdefault(label, len(styles)),
                 leaf_label(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
                 tuple(members),
-                tuple(point.parameters.get(x) for point in members) if x else tuple(None for _ in members),
+                tuple(point.value(x) for point in members) if x else tuple(None for _ in members),
             )
         )
-    values = {hashable(point.parameters.get(x)): point.parameters.get(x) for point in points} if x else {}
+    values = {hashable(point.value(x)): point.value(x) for point in points} if x else {}
     y = report.get("y") or DEFAULT_METRICS
     return Arrangement(
         x,
@@ -96,7 +97,8 @@ def _x_leaf(points: Sequence[MeasuredPoint], swept: Sequence[str], wanted: str |
         return wanted
     numeric = [leaf for leaf in swept if all(is_number(point.parameters.get(leaf)) for point in points)]
     # where no leaf is a number, what the method is tells more as series than along x
-    return next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD_LEAVES] or swept), None)
+    x = next(iter(numeric or [leaf for leaf in swept if leaf not in METHOD_LEAVES] or swept), None)
+    return METHOD if x in ("backend", "algorithm") and {"backend", "algorithm"} <= set(swept) else x
 
 
 def _panel_leaf(points: Sequence[MeasuredPoint], others: Sequence[str]) -> str | None:
@@ -111,7 +113,7 @@ def _panel_leaf(points: Sequence[MeasuredPoint], others: Sequence[str]) -> str |
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
     """The swept leaves' values; where none is left, what the method is."""
     named = leaves or [leaf for leaf in ("backend", "algorithm") if leaf in parameters]
-    return "\u00a0· ".join(leaf_label(leaf, parameters.get(leaf)) for leaf in named) or "this scene"
+    return method_label(parameters, named) or "this scene"
 
 
 def _follows(points: Sequence[MeasuredPoint], leaf: str, x: str | None) -> bool:
@@ -123,11 +125,11 @@ def _follows(points: Sequence[MeasuredPoint], leaf: str, x: str | None) -> bool:
 
 def _spread(points: Sequence[MeasuredPoint], leaf: str) -> int:
     """How many values the leaf takes."""
-    return len({_key(point, (leaf,)) for point in points if leaf in point.parameters})
+    return len({_key(point, (leaf,)) for point in points if leaf == METHOD or leaf in point.parameters})
 
 
 def _key(point: MeasuredPoint, leaves: Sequence[str]) -> str:
-    return json.dumps([point.parameters.get(leaf) for leaf in leaves], sort_keys=True)
+    return json.dumps([point.value(leaf) for leaf in leaves], sort_keys=True)
 
 
 def _order(value: object) -> tuple[int, float]:

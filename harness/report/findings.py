@@ -12,6 +12,7 @@ from harness.report.criteria import refusals
 from harness.report.missing import is_judged
 from harness.report.quantity import number, plural, quantity
 from harness.report.ranking import Growth
+from harness.report.sentences.credit import credit_sentences
 from harness.report.sentences.crossings import crossing_sentences
 from harness.report.sentences.growth import change_sentences, exponent_sentences
 from harness.report.sentences.leaders import leader_sentences
@@ -43,6 +44,8 @@ def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequen
         *exponent_sentences(arrangement, growths),
         *change_sentences(arrangement),
     ]
+    if sentences:  # which name methods
+        sentences += credit_sentences(arrangement)
     sentences += _outcomes([row for row in record.claims if is_judged(row)], "claim")
     if not sentences and any(not point.good.empty for point in arrangement.points):
         sentences += _single(arrangement)

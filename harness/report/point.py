@@ -14,7 +14,10 @@ import pandas as pd
 
 from harness.measure.statistics import Summary, summary
 from harness.store.records import PointRow
-from harness.vocabulary import METHOD_LEAVES
+from harness.vocabulary import METHOD_LEAVES, MethodName
+
+METHOD = "method"
+"""What goes along x where an experiment varies backend and algorithm together: it is no leaf, but both of them."""
 
 BUSY_ABOVE = 1.2
 """Elapsed over CPU time from which on the machine was busy with something else."""
@@ -44,6 +47,10 @@ class MeasuredPoint:
     def scene(self) -> dict[str, Any]:
         """Those of its leaves that are not the method's."""
         return {leaf: value for leaf, value in self.parameters.items() if leaf not in METHOD_LEAVES}
+
+    def value(self, x: str | None) -> Any:
+        """Its place along x: the value of a leaf, or the method's label."""
+        return MethodName.of(self.parameters).label if x == METHOD else self.parameters.get(x or "")
 
     @cached_property
     def good(self) -> pd.DataFrame:

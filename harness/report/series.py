@@ -11,8 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from harness.report.point import MeasuredPoint
-from harness.report.words import is_noisy, leaf_label
+from harness.report.methods import method_label
+from harness.report.point import METHOD, MeasuredPoint
+from harness.report.words import is_noisy
 from harness.vocabulary import METHOD_LEAVES
 
 Noise = Literal["low noise", "noisy", ""]
@@ -87,11 +88,11 @@ class Arrangement:
     @property
     def methods(self) -> tuple[Series, ...]:
         """What can be ranked: the series, or, where one series runs over methods, each of its points as one."""
-        if len(self.series) > 1 or self.numeric or self.x not in METHOD_LEAVES:
+        if len(self.series) > 1 or self.numeric or self.x not in (METHOD, *METHOD_LEAVES):
             return self.series
         line = self.series[0]
         return tuple(
-            Series(leaf_label(self.x, value), place, line.panel, (point,), (value,))
+            Series(method_label(point.parameters, [self.x]), place, line.panel, (point,), (value,))
             for place, (point, value) in enumerate(zip(line.points, line.x, strict=True))
         )
 

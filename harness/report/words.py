@@ -32,7 +32,7 @@ _LEAVES = {
     "stages": "stages forced",
 }
 # Leaves whose values explain themselves in a label; others are written "leaf value".
-_SELF_EVIDENT = ("backend", "algorithm", "mesh", "response", "stages")
+_SELF_EVIDENT = ("method", "backend", "algorithm", "mesh", "response", "stages")
 # What `scene_text` says of a scene already.
 SCENE_LEAVES = ("count", "mesh", "faces", "hull_vertices", "shape", "box_ratio", "box", "box_side", "packing")
 

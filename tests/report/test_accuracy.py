@@ -57,7 +57,7 @@ def text_of(html):
 
 
 def test_each_method_is_a_curve_over_its_knob_the_cheapest_setting_first(tradeoff):
-    assert [method.label for method in tradeoff.curves] == ["brute-force", "grid", "tree", "predictive"]
+    assert [method.label for method in tradeoff.curves] == ["fcl brute-force", "own grid", "fcl tree", "own predictive"]
     for method in tradeoff.curves[:3]:
         assert [setting.knob for setting in method.settings] == STEPS
 
@@ -70,12 +70,12 @@ def test_the_cheapest_setting_that_is_right_enough_is_chosen(tradeoff):
     assert grid.cheapest(1e-4) is None
     assert predictive.cheapest(1e-6) is not None
     assert tree.cheapest(1e-1) is None, "it misses a third of the hits"
-    assert [method.label for method, _ in tradeoff.ranked(1e-2)] == ["grid", "predictive", "brute-force"]
+    assert [method.label for method, _ in tradeoff.ranked(1e-2)] == ["own grid", "own predictive", "fcl brute-force"]
 
 
 def test_the_front_has_what_nothing_beats_and_nothing_that_misses_hits(tradeoff):
     labels = {id(setting): method.label for method, setting in tradeoff.settings}
-    assert [labels[id(setting)] for setting in tradeoff.front] == ["grid", "grid", "predictive"]
+    assert [labels[id(setting)] for setting in tradeoff.front] == ["own grid", "own grid", "own predictive"]
     assert tradeoff.front[-1].shown == TRUST
 
 
@@ -88,8 +88,8 @@ def test_the_order_of_frames_is_one_and_what_misses_hits_has_none(tradeoff):
 
 
 def test_the_page_says_what_to_use_and_so_does_the_overview(pages):
-    said = "For 10 spheres at packing 0.00500 at an error of 10⁻⁴ s, use predictive, 20.4 ms of CPU time"
-    lost = "; brute-force, grid, tree do not reach it."
+    said = "For 10 spheres at packing 0.00500 at an error of 10⁻⁴ s, use own predictive, 20.4 ms of CPU time"
+    lost = "; fcl brute-force, own grid, fcl tree do not reach it."
     for name in ("accuracy.html", "index.html"):
         assert said + lost in text_of(pages[name]).replace("\u00a0", " ")
 
@@ -103,9 +103,10 @@ def test_the_ratio_to_the_next_method_has_its_interval(tmp_path):
     (accuracy,) = Results(database).accuracy
     assert accuracy.tradeoffs[0].decided == 1e-2
     text = dict(render(database))["accuracy.html"]
-    assert "use grid (dt 1/60), 6.12 ms of CPU time: 10× [10, 10] cheaper than brute-force (dt 1/60)" in text_of(
-        text
-    ).replace("\u00a0", " ")
+    assert (
+        "use own grid (dt 1/60), 6.12 ms of CPU time: 10× [10, 10] cheaper than fcl brute-force (dt 1/60)"
+        in text_of(text).replace("\u00a0", " ")
+    )
 
 
 def test_a_method_that_cannot_reach_an_error_says_how_far_it_came(pages):

@@ -1,7 +1,5 @@
 """Points arranged into series."""
 
-import pytest
-
 from harness.report.arrange import arrange
 from harness.store.tables import experiments, runs
 
@@ -11,7 +9,6 @@ def arranged(database, name):
     return arrange(record, runs(database, [name]))
 
 
-@pytest.mark.slow
 def test_x_is_what_the_experiment_asks_for_and_a_leaf_it_determines_is_no_series(database):
     found = arranged(database, "homework/complexity")
     assert (found.x, found.x_values, len(found.series)) == ("faces", (1753, 9868, 17001), 1)
@@ -30,7 +27,11 @@ def test_without_a_number_the_scene_goes_along_x_and_the_method_makes_series(dat
 def test_too_many_series_are_split_into_panels_by_the_scene(database):
     found = arranged(database, "homework/algorithms")
     assert found.panels == ("box_ratio 0.01", "box_ratio 0.04", "box_ratio 0.25")
-    assert {series.label: series.style for series in found.series} == {"brute-force": 0, "grid": 1, "predictive": 2}
+    assert {series.label: series.style for series in found.series} == {
+        "fcl brute-force": 0,
+        "own grid": 1,
+        "own predictive": 2,
+    }
 
 
 def test_every_point_is_in_one_series(database):
@@ -42,6 +43,6 @@ def test_every_point_is_in_one_series(database):
 
 def test_a_failed_run_counts_in_no_median(database):
     found = arranged(database, "homework/algorithms")
-    point = next(series for series in found.series if series.label == "brute-force").at(1000)
+    point = next(series for series in found.series if series.label == "fcl brute-force").at(1000)
     assert len(point.runs) == 5
     assert point.summary("pair_seconds") is None

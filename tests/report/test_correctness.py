@@ -72,7 +72,7 @@ def test_a_method_that_is_wrong_has_no_rank_on_the_page_of_its_experiment_either
     found = pages(tmp_path / "x.db", document(["fcl/grid", "pybullet"], wrong=["fcl/grid"]))
     page = found["pages/peers/index.html"]
     findings, warnings = page.split('<div class="box warning">')[:2]
-    assert "<strong>tree</strong> has the lowest" in findings
+    assert "<strong>fcl tree</strong> has the lowest" in findings
     assert "<strong>fcl/grid was proven wrong</strong> at poses of this experiment" in warnings
     assert re.search(r'grid</th>.*<s class="struck">1</s>', page)
     assert "Struck through: was proven wrong by comparison, and is not ranked." in page

@@ -12,6 +12,7 @@ from harness.store.records import PointRow, VerdictRow
 
 EXPECT = [{"metric": "energy_drift", "at_most": 1e-12}, {"metric": "escaped", "equals": 0}]
 CLAIMS = [{"metric": "pair_tests", "exponent_of": "count", "between": [1, 3]}]
+METHOD = {"backend": "fcl", "algorithm": "grid", "shape": "hull"}
 METRICS = {"run_seconds": (0.5, "s"), "pair_tests": (10.0, "1"), "energy_drift": (0.0, "1"), "escaped": (0.0, "1")}
 
 
@@ -20,7 +21,7 @@ def swept(path, names, runs, *, finished=False, repeats=5):
     with Database.open(path) as database:
         sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"processor": "Example"}, {})
         for name in names:
-            points = [PointRow(f"{name}-{count}", {"count": count, "backend": "fcl"}) for count in (5, 10)]
+            points = [PointRow(f"{name}-{count}", {"count": count, **METHOD}) for count in (5, 10)]
             specification = {"expect": EXPECT, "claims": CLAIMS, "swept": ["count"], "measure": {"repeats": repeats}}
             database.list_experiment(sweep, name, name.capitalize(), None, "title: x\n", specification, points)
         every = [(name, count, repeat) for name in names for count in (5, 10) for repeat in range(repeats)]
@@ -55,7 +56,7 @@ def test_a_run_that_experiments_share_is_missing_once(tmp_path):
     path = swept(tmp_path / "x.db", ["a"], 4)
     with Database.open(path) as database:
         sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"processor": "Example"}, {})
-        points = [PointRow("a-5", {"count": 5, "backend": "fcl"})]
+        points = [PointRow("a-5", {"count": 5, **METHOD})]
         database.list_experiment(sweep, "b", "B", None, "", {"swept": [], "measure": {"repeats": 7}}, points)
     assert "8 of 12 runs are missing" in of(path)
 

@@ -47,11 +47,11 @@ def test_a_false_claim_degrades_and_what_is_held_survives_each_with_its_number(c
     (row,) = rows_of(pages)
     assert row == "Far away ≈ degrades missed hits 0.400, not ≤ 0 ✓ survives energy drift 3.00 × 10⁻¹³ ≤ 10⁻¹²"
     said = text_of(pages["stability.html"])
-    assert "grid (fcl) survives 0 of 1 case, degrades in 1 (Far away)" in said
-    assert "predictive survives 1 of 1 case." in said
+    assert "own grid survives 0 of 1 case, degrades in 1 (Far away)" in said
+    assert "own predictive survives 1 of 1 case." in said
     assert 'href="pages/stability/x/index.html"' in pages["stability.html"]
     overview = text_of(pages["index.html"])
-    assert "predictive survives 1 of 1 case." in overview
+    assert "own predictive survives 1 of 1 case." in overview
     assert 'href="stability.html"' in pages["pages/stability/x/index.html"].replace("../", "")
 
 

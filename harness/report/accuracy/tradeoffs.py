@@ -14,6 +14,7 @@ from typing import Any
 
 from harness.measure.noise import distinguishable
 from harness.measure.statistics import Exponent, Summary, fit_exponent
+from harness.report.methods import method_label
 from harness.report.point import MeasuredPoint
 from harness.report.ranking import times_worse
 from harness.report.series import Arrangement
@@ -177,7 +178,7 @@ def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
         first = members[0].parameters
         method = MethodName.of(first)
         settings = [found for point in members if (found := _setting(point, method.knob or "tolerance")) is not None]
-        label = "\u00a0· ".join(leaf_label(leaf, first.get(leaf)) for leaf in leaves) or method.algorithm
+        label = method_label(first, leaves) or method.label
         if settings:
             ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
             made.append(Curve(method, label, len(made), ordered))

@@ -10,7 +10,6 @@ from functools import cached_property
 from markupsafe import Markup
 
 from harness.report.experiment import ExperimentPage
-from harness.report.methods import label_of
 from harness.report.quantity import number, plural
 from harness.report.stability.case import Case, CaseResult, cases_of, is_case
 
@@ -61,7 +60,7 @@ def matrix(pages: Sequence[ExperimentPage]) -> Matrix | None:
     methods = dict.fromkeys(method for case in cases for method in case.methods)
     # what is exact comes last, as in the files
     order = sorted(methods, key=lambda method: not method.stepped)
-    return Matrix(tuple(cases), {method.pipeline: label_of(method) for method in order}) if methods else None
+    return Matrix(tuple(cases), {method.pipeline: method.label for method in order}) if methods else None
 
 
 def _is(result: CaseResult | None, word: str) -> bool:

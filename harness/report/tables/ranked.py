@@ -1,4 +1,4 @@
-"""Series against series: a table a metric, with the best of each panel bold. None where there is only one series."""
+"""Method against method: a table a metric, with the best of each panel bold. None where there is only one of them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _TINTS = ((100.0, "t5"), (20.0, "t4"), (5.0, "t3"), (2.0, "t2"), (1.2, "t1"))
 
 
 def ranked_tables(arrangement: Arrangement) -> list[Table]:
-    """The tables of an experiment, series down and x across."""
-    if len(arrangement.series) < 2:
+    """The tables of an experiment, series down and x across; or methods down where one series runs over them."""
+    if len(arrangement.methods) < 2:
         return []
     measured_ones = [
         metric for metric in arrangement.metrics if any(point.summary(metric) for point in arrangement.points)
@@ -24,11 +24,13 @@ def ranked_tables(arrangement: Arrangement) -> list[Table]:
 
 
 def _table(arrangement: Arrangement, metric: str) -> Table:
-    xs = arrangement.x_values or (None,)
+    methods = arrangement.methods
+    across = arrangement.x is not None and methods is arrangement.series
+    xs = arrangement.x_values if across else (None,)
     unit = scale([point.median(metric) for point in arrangement.points], metric_unit(metric))
     ranked, rows = is_ranked(metric), []
     for panel in arrangement.panels:
-        lines = [series for series in arrangement.series if series.panel == panel]
+        lines = [series for series in methods if series.panel == panel]
         ranks = [
             {entry.series.label: entry for entry in rank(lines, x, metric, arrangement.floor(metric))} if ranked else {}
             for x in xs
@@ -36,15 +38,15 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
         for series in lines:
             row = [words(series.label, series.style), *panel_entry(arrangement, series.points[0])]
             row += [
-                measured(series.at(x), metric, unit, _mark(places.get(series.label)))
+                measured(series.at(x) if across else series.points[0], metric, unit, _mark(places.get(series.label)))
                 for x, places in zip(xs, ranks, strict=True)
             ]
             rows.append(tuple(row))
     columns = [Column("Series", numeric=False), *panel_column(arrangement)]
-    if arrangement.x is None:
-        columns.append(Column(metric, unit.symbol))
+    if across:
+        columns += [Column(leaf_label(str(arrangement.x), x)) for x in xs]
     else:
-        columns += [Column(leaf_label(arrangement.x, x)) for x in xs]
+        columns.append(Column(metric, unit.symbol))
     units = f", {unit.symbol}" if unit.symbol else ""
     note = f"{metric}{units}, {medians_text(arrangement)}."
     if ranked:
