@@ -111,7 +111,7 @@ def summary(values: ArrayLike) -> Summary:
     median = float(np.median(counted))
     if n < FEWEST_FOR_INTERVAL:
         return Summary(median, float(counted[0]), float(counted[-1]), None, n, missing=missing)
-    place, coverage = _interval_place(n)
+    place, coverage = interval_place(n)
     return Summary(
         median, float(counted[place]), float(counted[-1 - place]), coverage, n, _outliers(given, median), missing
     )
@@ -137,11 +137,23 @@ def paired_ratio(a: ArrayLike, b: ArrayLike) -> Summary:
     >>> found.median, found.low, found.high
     (2.0, 2.0, 2.0)
     """
+    return summary(paired_ratios(a, b))
+
+
+def paired_ratios(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
+    """The ratios a/b themselves, one a pair; NaN where one is NaN, or both are 0.
+
+    Raises
+    ------
+    ValueError
+        The lengths differ.
+    """
     numerator, denominator = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     if numerator.shape != denominator.shape:
         raise ValueError(f"{numerator.size} values cannot be paired with {denominator.size}")
     with np.errstate(divide="ignore", invalid="ignore"):
-        return summary(numerator / denominator)
+        ratios: NDArray[np.float64] = numerator / denominator
+    return ratios
 
 
 def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
@@ -201,8 +213,8 @@ def geometric_mean(values: ArrayLike) -> float:
 
 
 @lru_cache(maxsize=256)
-def _interval_place(n: int) -> tuple[int, float]:
-    """The place k of the order statistics x[k] and x[n - 1 - k] that bound the median, and their coverage."""
+def interval_place(n: int) -> tuple[int, float]:
+    """Of five values or more, the place k of those that bound the median, x[k] and x[n - 1 - k], and their coverage."""
     # P(fewer than k + 1 of n values lie below the median) is binomial; both sides may miss half of 5 %
     place = max(0, int(stats.binom.ppf((1.0 - CONFIDENCE) / 2.0, n, 0.5)) - 1)
     return place, float(1.0 - 2.0 * stats.binom.cdf(place, n, 0.5))

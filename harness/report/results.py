@@ -15,6 +15,7 @@ from harness.report.accuracy.experiment import ExperimentAccuracy, accuracy_of
 from harness.report.backends.comparisons import Comparisons
 from harness.report.backends.correctness import correctness, newest
 from harness.report.experiment import ExperimentPage
+from harness.report.family import Family
 from harness.report.stability.matrix import Matrix, matrix
 from harness.report.sweeps.difference import Difference
 from harness.report.sweeps.page import newest_difference
@@ -43,6 +44,7 @@ class Results:
         """The page of every experiment."""
         taken: set[str] = set()
         pages: list[ExperimentPage] = []
+        family = Family(lambda: [(page.record, page.measured) for page in pages])
         for record in self.records:
             compared = [found for found in self.compared.records if found.experiment == record.name]
             pages.append(
@@ -55,6 +57,7 @@ class Results:
                     correctness(compared).wrong,
                     pages,
                     self.database,
+                    family,
                 )
             )
         return pages
