@@ -247,7 +247,7 @@ def _by_repeat(samples: Mapping[float, Sequence[float]], xs: Collection[float]) 
     if fewest < 2:
         return None
     logs: NDArray[np.float64] = np.log(np.array([ordered[x][:fewest] for x in xs], dtype=float))
-    return logs.T
+    return np.ascontiguousarray(logs.T)
 
 
 @lru_cache(maxsize=256)
