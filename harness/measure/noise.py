@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
 from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary, interval_place
@@ -125,7 +125,7 @@ def p_value(ratios: ArrayLike, known: Control) -> float:
     '1.000'
     """
     logs = np.log(np.asarray(ratios, dtype=float))
-    return max(student(logs), _sign_test(np.sort(logs), known))
+    return max(student(logs), sign_test(np.sort(logs), known))
 
 
 def student(logs: ArrayLike, floor: float = 0.0) -> float:
@@ -169,8 +169,13 @@ def level(p_values: Sequence[float], rate: float = FALSE_RATE) -> float:
     return float(counted[-1]) if len(counted) else 0.0
 
 
-def _sign_test(logs: np.ndarray[tuple[int], np.dtype[np.float64]], known: Control) -> float:
-    """Both signs and distances: how often the end of the interval lies beyond as many of the control's distances."""
+def sign_test(logs: NDArray[np.float64], known: Control) -> float:
+    """How often, of equal points, the end of the interval would lie beyond as many of the control's distances.
+
+    Parameters
+    ----------
+    logs : logarithms of paired ratios, five or more, in order
+    """
     n = len(logs)
     place = interval_place(n)[0]
     nearest = max(float(logs[place]), -float(logs[n - 1 - place]))

@@ -44,7 +44,6 @@ class Results:
         """The page of every experiment."""
         taken: set[str] = set()
         pages: list[ExperimentPage] = []
-        family = Family(lambda: [(page.record, page.measured) for page in pages])
         for record in self.records:
             compared = [found for found in self.compared.records if found.experiment == record.name]
             pages.append(
@@ -57,10 +56,15 @@ class Results:
                     correctness(compared).wrong,
                     pages,
                     self.database,
-                    family,
+                    self.family,
                 )
             )
         return pages
+
+    @cached_property
+    def family(self) -> Family:
+        """All comparisons of the report."""
+        return Family(lambda: [(page.record, page.measured) for page in self.pages])
 
     @cached_property
     def compared(self) -> Comparisons:

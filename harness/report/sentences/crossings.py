@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from itertools import combinations
 
 from markupsafe import Markup
@@ -23,19 +24,23 @@ def crossing_sentences(arrangement: Arrangement) -> list[Markup]:
 
     Nothing either of two that cannot be told apart at the largest x.
     """
+    found = [_sentence(str(arrangement.x), metric, a, b, crossing) for metric, a, b, crossing in crossings(arrangement)]
+    return found if len(found) <= _MOST else []
+
+
+def crossings(arrangement: Arrangement) -> Iterator[tuple[str, Series, Series, Crossover]]:
+    """The crossovers themselves: the clock, the two series, and where they cross."""
     clocks = [metric for metric in arrangement.metrics if is_noisy(metric) and not more_is_better(metric)]
     if not arrangement.numeric or arrangement.x is None or not clocks:
-        return []
-    found, resolution = [], arrangement.resolution(clocks[0])
+        return
+    resolution = arrangement.resolution(clocks[0])
     for panel in arrangement.panels:
         lines = [series for series in arrangement.series if series.panel == panel]
         for a, b in combinations(lines, 2):
-            if not a.shares_scenes_with(b):
-                continue
-            crossing = crossover(_leaders(a, b, clocks[0], resolution))
-            if crossing is not None:
-                found.append(_sentence(arrangement.x, clocks[0], a, b, crossing))
-    return found if len(found) <= _MOST else []
+            if a.shares_scenes_with(b):
+                crossing = crossover(_leaders(a, b, clocks[0], resolution))
+                if crossing is not None:
+                    yield clocks[0], a, b, crossing
 
 
 def _sentence(x: str, metric: str, a: Series, b: Series, crossing: Crossover) -> Markup:

@@ -133,12 +133,12 @@ def difference(path: str | Path, before: int | None = None, after: int | None = 
         if number is not None and number not in known:
             raise InputError(f"{path}: there is no sweep {number}; there are {_listed(known)}")
     if before is not None and after is not None:
-        return _difference(known[before], known[after], snapshot(path, before), snapshot(path, after))
+        return difference_of(known[before], known[after], snapshot(path, before), snapshot(path, after))
     recent = measuring_sweeps(path)[-_RECENT:]
     for late in [after] if after is not None else reversed(recent):
         new = snapshot(path, late)
         for early in [before] if before is not None else _earlier(known, recent, late):
-            found = _difference(known[early], known[late], snapshot(path, early), new)
+            found = difference_of(known[early], known[late], snapshot(path, early), new)
             if found.points:
                 return found
     raise InputError(
@@ -153,7 +153,8 @@ def _earlier(known: Mapping[int, SweepRecord], recent: Sequence[int], late: int)
     return sorted(numbers, key=lambda number: known[number].finished is None)
 
 
-def _difference(early: SweepRecord, late: SweepRecord, old: Snapshot, new: Snapshot) -> Difference:
+def difference_of(early: SweepRecord, late: SweepRecord, old: Snapshot, new: Snapshot) -> Difference:
+    """How results differ that two sweeps left."""
     mine, theirs = _by_parameters(old.runs), _by_parameters(new.runs)
     shared = [key for key in theirs if key in mine]
     again = [key for key in shared if _identity(mine[key]) != _identity(theirs[key])]
