@@ -64,8 +64,8 @@ def test_equal_methods_neither_cross_nor_stay_apart():
 def test_below_the_x_from_which_one_is_ahead_equals_are_called_that():
     found = sentences(BRUTE_FORCE, series("grid", [100.0, 400.0, 1600.0, 3200.0], noise=(1.01, 1.0, 1.0, 1.01, 0.99)))
     assert found == [
-        "From count <strong>80</strong> on, grid has a lower run time than brute-force; below, they cannot be told "
-        "apart throughout."
+        "From count <strong>80</strong> on, grid has a lower run time than brute-force; at smaller ones they cannot "
+        "always be told apart."
     ]
 
 

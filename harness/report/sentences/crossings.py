@@ -51,7 +51,7 @@ def _sentence(x: str, metric: str, a: Series, b: Series, crossing: Crossover) ->
         return Markup("At every {} measured{}, {}: they do not cross there.").format(x, where, outcome)
     text = Markup("From {} <strong>{}</strong>{} on, {}").format(x, number(crossing.by), where, outcome)
     if crossing.after is None:
-        return text + Markup("; below, they cannot be told apart throughout.")
+        return text + Markup("; at smaller ones they cannot always be told apart.")
     return text + Markup("; at {} it is the other way round: they cross between <strong>{}</strong> and {}.").format(
         number(crossing.after), number(crossing.after), number(crossing.by)
     )
