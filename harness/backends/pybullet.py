@@ -5,6 +5,8 @@ A mesh is replaced by its hull: Bullet never tests two concave meshes against ea
 
 from __future__ import annotations
 
+import weakref
+
 import numpy as np
 import pybullet
 
@@ -43,6 +45,8 @@ class PyBullet:
 
     def load(self, scene: Scene) -> None:
         self._client = pybullet.connect(pybullet.DIRECT)
+        # a process has more than one world in its time, of which only the last should count in its memory
+        weakref.finalize(self, pybullet.disconnect, self._client)
         self._unit = unit_of(scene.bodies.sizes)
         self._inflation = 0.0 if scene.shape == "sphere" else 2 * MARGIN
         shapes: dict[float, int] = {}

@@ -1,5 +1,7 @@
 """Say how two sweeps differ: which points are slower or faster beyond the noise, which counted or ended otherwise.
 
+A point needs five repeats in both sweeps to be called slower or faster, beyond what all points have in common.
+
 Without numbers, the newest sweep and the newest before it that measured the same points; with one, that and the newest.
 """
 
@@ -57,11 +59,22 @@ def _say(found: Difference) -> None:
     for verdict in found.verdicts:
         print(f"{verdict.experiment}: {verdict.before} before, {verdict.after} now: {verdict.statement}")
     counts = found.counts
+    if found.drift is not None:
+        print(f"all points together took {found.drift:.3g} times as long: {_drift_text(found.drift)}")
     print(
         f"{len(found.points)} points measured by both: {counts['slower']} slower, {counts['faster']} faster, "
         f"{counts['same']} not to be told apart (by less than {100 * found.floor:.0f} %), "
-        f"{counts['unknown']} without enough to tell; {counts['changed']} changed; {found.untouched} not measured again"
+        f"{counts['unknown']} with too few repeats to tell; {counts['changed']} changed; "
+        f"{found.untouched} not measured again"
     )
+
+
+def _drift_text(drift: float) -> str:
+    from harness.report.sweeps.difference import MOST_DRIFT
+
+    if 1.0 / MOST_DRIFT < drift < MOST_DRIFT:
+        return "taken for a drift of the machine, and taken out of every ratio"
+    return f"more than a machine drifts; {MOST_DRIFT:.3g} times is taken out of every ratio"
 
 
 def _told(point: PointDifference) -> list[str]:
@@ -70,7 +83,7 @@ def _told(point: PointDifference) -> list[str]:
     if point.pace in ("slower", "faster"):
         told.append(
             f"{point.pace}, {point.before:.3g} s to {point.after:.3g} s, {point.ratio.median:.3g} times "
-            f"[{point.ratio.low:.3g}, {point.ratio.high:.3g}]"
+            f"[{point.ratio.low:.3g}, {point.ratio.high:.3g}]{'' if point.ratio.coverage else ' (range)'}"
         )
     told += [f"{name} {before:.15g} to {after:.15g}" for name, (before, after) in point.counters.items()]
     if point.statuses is not None:
@@ -83,6 +96,7 @@ def _document(found: Difference) -> dict[str, Any]:
         "before": {"sweep": found.before.id, "started": found.before.started, "commit": found.before.commit},
         "after": {"sweep": found.after.id, "started": found.after.started, "commit": found.after.commit},
         "floor": found.floor,
+        "drift": found.drift,
         "counts": {**found.counts, "untouched": found.untouched, "verdicts": len(found.verdicts)},
         "points": [
             {

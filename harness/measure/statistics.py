@@ -8,7 +8,7 @@ interval. Nothing here is random: the same values give the same numbers.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -25,6 +25,7 @@ OUTLIER_BEYOND = 5.0
 ENOUGH_RANGE = 8.0  # largest x / smallest x
 FEWEST_FOR_EXPONENT = 3
 
+_MEDIAN_TO_MEAN = math.pi / 2.0  # variance of a median to that of a mean, of normal noise
 _CONSTANT = 1e-12  # what varies by less, relatively, varies by rounding
 _SCALED = 1.0 / float(stats.norm.ppf(0.75))  # makes a median absolute deviation a standard deviation of normal noise
 
@@ -111,7 +112,7 @@ def summary(values: ArrayLike) -> Summary:
     median = float(np.median(counted))
     if n < FEWEST_FOR_INTERVAL:
         return Summary(median, float(counted[0]), float(counted[-1]), None, n, missing=missing)
-    place, coverage = _interval_place(n)
+    place, coverage = interval_place(n)
     return Summary(
         median, float(counted[place]), float(counted[-1 - place]), coverage, n, _outliers(given, median), missing
     )
@@ -137,23 +138,38 @@ def paired_ratio(a: ArrayLike, b: ArrayLike) -> Summary:
     >>> found.median, found.low, found.high
     (2.0, 2.0, 2.0)
     """
+    return summary(paired_ratios(a, b))
+
+
+def paired_ratios(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
+    """The ratios a/b themselves, one a pair; NaN where one is NaN, or both are 0.
+
+    Raises
+    ------
+    ValueError
+        The lengths differ.
+    """
     numerator, denominator = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     if numerator.shape != denominator.shape:
         raise ValueError(f"{numerator.size} values cannot be paired with {denominator.size}")
     with np.errstate(divide="ignore", invalid="ignore"):
-        return summary(numerator / denominator)
+        ratios: NDArray[np.float64] = numerator / denominator
+    return ratios
 
 
 def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
     """How y grows with x: least squares through the medians on logarithmic axes.
 
-    The interval is Student's of the slope. It measures how far the medians scatter about one power law, be it by noise
-    or because the growth is no power law, and so serves clocks and counters alike: a counter that follows a power law
-    exactly has an interval without width.
+    The interval is Student's, of the slopes that the repeats have by themselves: each repeat is a measurement of its
+    own, so that it holds however much noisier one x is than another. It is widened to Student's of the scatter of the
+    medians about the line where that says more than the noise can explain, for then the growth is no power law; and
+    where there is one value an x, as of counters, which have no noise. A counter that follows a power law exactly has
+    an interval without width.
 
     Parameters
     ----------
-    samples : {x: repeats of y there}; NaN among the repeats do not count, and an x without any is left out
+    samples : {x: repeats of y there, in the order of the repeats}; NaN among them do not count, and an x without any
+        is left out
 
     Examples
     --------
@@ -177,8 +193,67 @@ def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
         return Exponent(0.0, end, end, 1.0, range_factor, n, dropped)
     fit = stats.linregress(log_x, log_y)
     slope = float(fit.slope)
-    half = float(stats.t.ppf((1.0 + CONFIDENCE) / 2.0, n - 2) * fit.stderr) if n > 2 else math.nan
-    return Exponent(slope, slope - half, slope + half, float(fit.rvalue**2), range_factor, n, dropped)
+    low, high = _slope_interval(log_x, log_y, slope, float(fit.stderr), _by_repeat(samples, usable))
+    return Exponent(slope, low, high, float(fit.rvalue**2), range_factor, n, dropped)
+
+
+def _slope_interval(
+    log_x: NDArray[np.float64],
+    log_y: NDArray[np.float64],
+    slope: float,
+    scatter: float,
+    repeats: NDArray[np.float64] | None,
+) -> tuple[float, float]:
+    """The 95 % interval of a slope; NaN below three points.
+
+    Parameters
+    ----------
+    log_x, log_y : of the medians, (k,)
+    slope, scatter : of the line through them, and its standard error by how they scatter about it
+    repeats : (n, k) logarithms of y, a row a repeat; None where there is one an x
+    """
+    k = len(log_x)
+    if k < FEWEST_FOR_EXPONENT:
+        return math.nan, math.nan
+    half = _student(k - 2) * scatter
+    if repeats is None:
+        return slope - half, slope + half
+    n = len(repeats)
+    centred = log_x - log_x.mean()
+    slopes = repeats @ centred / float(centred @ centred)
+    middle, error = float(slopes.mean()), float(slopes.std(ddof=1)) / math.sqrt(n)
+    low, high = middle - _student(n - 1) * error, middle + _student(n - 1) * error
+    if _is_no_power_law(log_y - slope * centred - log_y.mean(), repeats):
+        low, high = min(low, slope - half), max(high, slope + half)
+    return min(low, slope), max(high, slope)
+
+
+def _is_no_power_law(residuals: NDArray[np.float64], repeats: NDArray[np.float64]) -> bool:
+    """Whether medians lie farther off a line than their own noise explains, by an F test at 1 %."""
+    n, k = repeats.shape
+    # what slows a whole repeat moves its line and bends none
+    noise = (repeats - repeats.mean(axis=1, keepdims=True)).var(axis=0, ddof=1) / n
+    if not noise.any():
+        return True
+    excess = residuals**2 / np.maximum(noise, noise.max() * 1e-12)
+    ratio = float(excess.sum()) / (k - 2)
+    return bool(ratio > _MEDIAN_TO_MEAN * stats.f.ppf(0.99, k - 2, n - 1))
+
+
+def _by_repeat(samples: Mapping[float, Sequence[float]], xs: Collection[float]) -> NDArray[np.float64] | None:
+    """Logarithms of y, a row a repeat and a column an x, of the first repeats that all have; None below two."""
+    ordered = {float(x): [v for v in values if v > 0.0] for x, values in samples.items() if float(x) in xs}
+    fewest = min(len(values) for values in ordered.values())
+    if fewest < 2:
+        return None
+    logs: NDArray[np.float64] = np.log(np.array([ordered[x][:fewest] for x in xs], dtype=float))
+    return np.ascontiguousarray(logs.T)
+
+
+@lru_cache(maxsize=256)
+def _student(freedom: int) -> float:
+    """How many standard errors an interval reaches to either side."""
+    return float(stats.t.ppf((1.0 + CONFIDENCE) / 2.0, freedom))
 
 
 def geometric_mean(values: ArrayLike) -> float:
@@ -201,8 +276,8 @@ def geometric_mean(values: ArrayLike) -> float:
 
 
 @lru_cache(maxsize=256)
-def _interval_place(n: int) -> tuple[int, float]:
-    """The place k of the order statistics x[k] and x[n - 1 - k] that bound the median, and their coverage."""
+def interval_place(n: int) -> tuple[int, float]:
+    """Of five values or more, the place k of those that bound the median, x[k] and x[n - 1 - k], and their coverage."""
     # P(fewer than k + 1 of n values lie below the median) is binomial; both sides may miss half of 5 %
     place = max(0, int(stats.binom.ppf((1.0 - CONFIDENCE) / 2.0, n, 0.5)) - 1)
     return place, float(1.0 - 2.0 * stats.binom.cdf(place, n, 0.5))

@@ -2,8 +2,9 @@
 
 An expectation must hold in every run, and every run it speaks of must have a result and report the metric. A claim is
 about medians: it holds where the interval lies within its limits, fails where it lies outside, and is undecided where
-it straddles a limit or there is too little to tell. Growth exponents and ratios are judged by their intervals for both.
-With several points or groups, one failure fails the whole, and else one undecided leaves it undecided.
+it straddles a limit or there is too little to tell. Growth exponents and ratios are judged by their intervals for both;
+a ratio of clocks needs five pairs of repeats and a control, whose noise floor widens its interval. With several points
+or groups, one failure fails the whole, and else one undecided leaves it undecided.
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ import pandas as pd
 
 from harness.measure.limits import Criterion, Limits, Outcome, declared, leaves_text, limits
 from harness.measure.metrics import METRICS
+from harness.measure.noise import Control
 from harness.measure.number_text import interval_text, number_text
 from harness.measure.selection import grouped, matching, plain, tied, values, varying
-from harness.measure.statistics import CONFIDENCE, Summary, fit_exponent, paired_ratio, summary
+from harness.measure.statistics import CONFIDENCE, FEWEST_FOR_INTERVAL, Summary, fit_exponent, paired_ratio, summary
 
 Kind = Literal["expectation", "claim"]
 
@@ -64,7 +66,13 @@ class Verdict:
         return {"groups": [asdict(group) for group in self.groups]}
 
 
-def judge(criterion: Criterion, runs: pd.DataFrame, swept: Sequence[str], kind: Kind = "expectation") -> Verdict:
+def judge(
+    criterion: Criterion,
+    runs: pd.DataFrame,
+    swept: Sequence[str],
+    kind: Kind = "expectation",
+    controls: Mapping[str, Control] | None = None,
+) -> Verdict:
     """Judge one row of `expect` or `claims` by the runs of its experiment.
 
     Parameters
@@ -73,6 +81,7 @@ def judge(criterion: Criterion, runs: pd.DataFrame, swept: Sequence[str], kind: 
     runs : the run table of one experiment
     swept : the leaves that vary in it
     kind : whether the row stands in `expect` or in `claims`
+    controls : of the experiment, by clock; None where it is not known whether there are any
     """
     if criterion.metric == REJECTED:  # a run that was refused has an answer to this, though no other
         runs = runs.assign(**{REJECTED: (runs["status"] == REJECTED).astype(float)})
@@ -82,7 +91,8 @@ def judge(criterion: Criterion, runs: pd.DataFrame, swept: Sequence[str], kind: 
     chosen = matching(runs, criterion.where)
     if chosen.empty:
         return Verdict("undecided", f"no run{_for(criterion.where)} to judge {criterion.metric} by")
-    basis = _Basis(criterion, limits(criterion), runs, chosen, [leaf for leaf in swept if leaf in runs], kind)
+    leaves = [leaf for leaf in swept if leaf in runs]
+    basis = _Basis(criterion, limits(criterion), runs, chosen, leaves, kind, controls)
     if criterion.exponent_of is not None:
         return _combined(basis, _exponents(basis, criterion.exponent_of), chosen, "groups")
     if criterion.ratio_to is not None:
@@ -111,6 +121,7 @@ class _Basis:
     chosen: pd.DataFrame  # those that match `where`
     swept: list[str]
     kind: Kind
+    controls: Mapping[str, Control] | None
 
     @property
     def metric(self) -> str:
@@ -266,8 +277,25 @@ def _ratio(
     places = ["repeat", "machine"] if "machine" in rows else ["repeat"]  # times of two machines are not compared
     pairs = basis.finished(rows).merge(basis.finished(partner), on=places, suffixes=("", " of partner"))
     found = paired_ratio(pairs[basis.metric], pairs[f"{basis.metric} of partner"])
-    outcome, remark = _judged(basis, found)
+    outcome, remark = _judged_ratio(basis, found)
     return _group(where, outcome, f"{subject} is {interval_text(found)} times that{_for(base)}{remark}", found)
+
+
+def _judged_ratio(basis: _Basis, found: Summary) -> tuple[Outcome, str]:
+    """As `_judged`; of a clock, only with repeats and a control enough, and beyond its noise floor."""
+    if not basis.noisy or found.n == 0:
+        return _judged(basis, found)
+    if found.n < FEWEST_FOR_INTERVAL:
+        return "undecided", f", from too few pairs of repeats to judge (fewer than {FEWEST_FOR_INTERVAL})"
+    if basis.controls is None:
+        return _judged(basis, found)
+    control = basis.controls.get(basis.metric)
+    if control is None:
+        return "undecided", ", without a control to judge its noise by"
+    outcome = basis.limits.judge(found.low / (1.0 + control.floor), found.high * (1.0 + control.floor))
+    remark = f", which straddles a limit by less than the noise floor of {100 * control.floor:.2g} %"
+    plain_outcome, plain_remark = _judged(basis, found)
+    return outcome, remark if outcome != plain_outcome else plain_remark
 
 
 def _judged(basis: _Basis, found: Summary) -> tuple[Outcome, str]:

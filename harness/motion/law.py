@@ -39,3 +39,11 @@ class MotionLaw:
         MotionLaw(duration=20.0, dt=0.2, response='none', restitution=1.0)
         """
         return replace(self, duration=self.duration * factor, dt=self.dt * factor)
+
+    def beginning(self, share: float) -> MotionLaw:
+        """The same law for a share of the time, one frame at least.
+
+        >>> MotionLaw(duration=10.0, dt=0.1, response="none").beginning(0.25)
+        MotionLaw(duration=2.5, dt=0.1, response='none', restitution=1.0)
+        """
+        return replace(self, duration=min(self.duration, max(self.duration * share, self.dt)))

@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from harness.measure.noise import noise_floor
+from harness.measure.noise import Control, controls_of
 from harness.report.methods import method_label
 from harness.report.point import METHOD, MeasuredPoint
 from harness.report.series import Arrangement, Series, hashable, is_number
@@ -73,23 +73,20 @@ def arrange(
         tuple(series),
         panel_leaf,
         (y,) if isinstance(y, str) else tuple(y),
-        *_floors(points, controls),
+        _controls(runs, controls),
     )
 
 
-def _floors(points: Sequence[MeasuredPoint], controls: Sequence[ControlRecord]) -> tuple[dict[str, float], int]:
-    """The noise floor of every clock that the controls report, and how many pairs there are."""
-    of_point = {point.row.key: point for point in points}
-    pairs: dict[str, list[tuple[float, float]]] = {}
-    for control in controls:
-        point = of_point.get(control.point)
-        for metric, value in control.metrics.items() if point else ():
-            first = point.by_place(metric).get((control.repeat, control.machine)) if point else None
-            if first is not None:
-                pairs.setdefault(metric, []).append((first, value))
-    floors = {metric: noise_floor(*zip(*found, strict=True)) for metric, found in pairs.items()}
-    known = {metric: floor for metric, floor in floors.items() if floor is not None}
-    return known, max(map(len, pairs.values()), default=0)
+def _controls(runs: pd.DataFrame, controls: Sequence[ControlRecord]) -> dict[str, Control]:
+    """The control of every clock that tells one."""
+    clocks = sorted({metric for record in controls for metric in record.metrics if metric in runs.columns})
+    good = runs[runs["status"] == "ok"]
+    places = zip(good["point"], good["repeat"], good["machine"], strict=True)
+    first = {
+        place: dict(zip(clocks, values, strict=True))
+        for place, values in zip(places, good[clocks].itertuples(index=False, name=None), strict=True)
+    }
+    return controls_of(first, [((record.point, record.repeat, record.machine), record.metrics) for record in controls])
 
 
 def _x_leaf(points: Sequence[MeasuredPoint], swept: Sequence[str], wanted: str | None) -> str | None:

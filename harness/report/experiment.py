@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -13,6 +13,7 @@ import pandas as pd
 from harness.measure.metrics import METRICS
 from harness.report.arrange import arrange
 from harness.report.criteria import refusals
+from harness.report.family import Family
 from harness.report.figure import Figure, figures_of
 from harness.report.findings import Findings, findings
 from harness.report.machine import machine_text
@@ -42,6 +43,7 @@ class ExperimentPage:
     conditions : of the machines while its runs went on
     wrong : methods that were proven wrong at its poses
     all_pages : those of all experiments, this one among them
+    family : the comparisons of all of them; None where this one stands alone
     database : the results file, where a replay may be kept
     """
 
@@ -53,6 +55,7 @@ class ExperimentPage:
     wrong: Collection[MethodName] = ()
     all_pages: Sequence[ExperimentPage] = ()
     database: str | Path | None = None
+    family: Family | None = None
 
     @property
     def href(self) -> str:
@@ -60,9 +63,15 @@ class ExperimentPage:
         return f"{self.folder}/index.html"
 
     @cached_property
+    def measured(self) -> Arrangement:
+        """Its points as series, before it is known at which level two of them are told apart."""
+        return arrange(self.record, self.runs, self.controls, self.wrong)
+
+    @cached_property
     def arrangement(self) -> Arrangement:
         """Its points as series."""
-        return arrange(self.record, self.runs, self.controls, self.wrong)
+        family = self.family or Family(lambda: [(self.record, self.measured)])
+        return replace(self.measured, level=family.level)
 
     @cached_property
     def growths(self) -> list[Growth]:

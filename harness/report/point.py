@@ -73,8 +73,10 @@ class MeasuredPoint:
         """
         if metric not in self.good.columns:
             return {}
-        rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
-        return {(int(repeat), str(machine)): float(value) for repeat, machine, value in rows if math.isfinite(value)}
+        if metric not in self._by_place:
+            rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
+            self._by_place[metric] = {(int(r), str(m)): float(value) for r, m, value in rows if math.isfinite(value)}
+        return self._by_place[metric]
 
     def summary(self, metric: str) -> Summary | None:
         """Median and interval of the metric, None where no good run reports it."""
@@ -94,7 +96,7 @@ class MeasuredPoint:
         cpu = self.median("run_seconds")
         return self.median("run_seconds_elapsed") / cpu if cpu > 0 else math.nan
 
-    @property
+    @cached_property
     def disagrees(self) -> bool:
         """Whether a run's hits differ from the reference's."""
         return any(bool((self.values(metric) > 0).any()) for metric in ("missed_hits", "extra_hits"))
@@ -103,6 +105,10 @@ class MeasuredPoint:
     def is_wrong(self) -> bool:
         """Whether its answers are known to be wrong: such a point is shown struck through, and never ranked."""
         return self.proven_wrong or self.disagrees
+
+    @cached_property
+    def _by_place(self) -> dict[str, dict[tuple[int, str], float]]:
+        return {}
 
     @cached_property
     def _values(self) -> dict[str, npt.NDArray[np.float64]]:

@@ -3,31 +3,51 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from harness.measure.noise import distinguishable
-from harness.measure.statistics import Exponent, Summary, fit_exponent, paired_ratio
+import numpy as np
+import numpy.typing as npt
+
+from harness.measure.noise import student
+from harness.measure.resolution import Outcome, Resolution
+from harness.measure.statistics import (
+    FEWEST_FOR_INTERVAL,
+    Exponent,
+    Summary,
+    fit_exponent,
+    paired_ratios,
+    summary,
+)
 from harness.report.point import MeasuredPoint
 from harness.report.series import Arrangement, Series
 from harness.report.words import more_is_better
 
+# Relative. Without a control, no smaller change of a clock is called one.
+_UNCONTROLLED = 0.1
+
 
 @dataclass(frozen=True)
 class Ranked:
-    """One series at one x. `ratio` is how many times worse than the best it is, None where nothing can be paired."""
+    """One series at one x.
+
+    Parameters
+    ----------
+    ratio : how many times worse than the best it is; None of the best, and where nothing can be paired
+    told : whether that ratio is told from 1
+    """
 
     series: Series
     point: MeasuredPoint
     median: float
     ratio: Summary | None
     best: bool
-    floor: float = 0.0
+    told: Outcome = "same"
 
     @property
     def tied(self) -> bool:
-        """Whether it is the best, or not distinguishable from it beyond the noise floor."""
-        return self.best or (self.ratio is not None and not distinguishable(self.ratio, self.floor))
+        """Whether it is the best, or cannot be told apart from it."""
+        return self.best or self.told != "apart"
 
 
 @dataclass(frozen=True)
@@ -39,10 +59,11 @@ class Growth:
     exponent: Exponent
 
 
-def rank(series: Sequence[Series], x: object, metric: str, floor: float) -> list[Ranked]:
-    """The series that have the metric at x (None: anywhere), best first; `floor` is the noise floor of the metric.
+def rank(series: Sequence[Series], x: object, metric: str, resolution: Resolution) -> list[Ranked]:
+    """The series that have the metric at x (None: anywhere), the best median first.
 
-    Left out: what is known to be wrong, because a faster answer that is wrong is not faster.
+    Left out: what is known to be wrong, because a faster answer that is wrong is not faster. Whether the order means
+    anything, `unranked` says.
     """
     found = []
     for line in series:
@@ -54,9 +75,24 @@ def rank(series: Sequence[Series], x: object, metric: str, floor: float) -> list
         return []
     best = found[0][1]
     return [
-        Ranked(line, point, median, None if point is best else times_worse(point, best, metric), point is best, floor)
+        Ranked(line, point, median, None, True)
+        if point is best
+        else Ranked(line, point, median, times_worse(point, best, metric), False, told(point, best, metric, resolution))
         for line, point, median in found
     ]
+
+
+def unranked(outcomes: Iterable[Outcome]) -> str:
+    """Why nobody is ahead of the others, from what was told of each against the best; "" where somebody may be."""
+    found = set(outcomes)
+    if "few" in found:
+        return f"too few repeats to rank (fewer than {FEWEST_FOR_INTERVAL} pairs)"
+    return "no control to rank by" if "uncontrolled" in found else ""
+
+
+def told(point: MeasuredPoint, best: MeasuredPoint, metric: str, resolution: Resolution) -> Outcome:
+    """Whether two points are told apart in a metric."""
+    return resolution.tell(paired(point, best, metric))
 
 
 def times_worse(point: MeasuredPoint, best: MeasuredPoint, metric: str) -> Summary | None:
@@ -64,13 +100,22 @@ def times_worse(point: MeasuredPoint, best: MeasuredPoint, metric: str) -> Summa
 
     Repeats are paired that ran on the same machine.
     """
+    ratio = summary(paired(point, best, metric))
+    return ratio if ratio.n else None
+
+
+def paired(point: MeasuredPoint, best: MeasuredPoint, metric: str) -> npt.NDArray[np.float64]:
+    """The same, repeat by repeat; NaN where both are 0."""
     mine, theirs = point.by_place(metric), best.by_place(metric)
     shared = sorted(mine.keys() & theirs.keys())
-    if not shared:
-        return None
-    a, b = [mine[repeat] for repeat in shared], [theirs[repeat] for repeat in shared]
-    ratio = paired_ratio(b, a) if more_is_better(metric) else paired_ratio(a, b)
-    return ratio if ratio.n else None
+    a, b = np.array([mine[place] for place in shared]), np.array([theirs[place] for place in shared])
+    return paired_ratios(b, a) if more_is_better(metric) else paired_ratios(a, b)
+
+
+def change_p_value(last: MeasuredPoint, first: MeasuredPoint, metric: str) -> float:
+    """The p-value of a change of a clock without a control: of one that is larger than the noise of any."""
+    ratios = paired(last, first, metric)
+    return student(np.log(ratios[np.isfinite(ratios) & (ratios > 0.0)]), math.log1p(_UNCONTROLLED))
 
 
 def growth(arrangement: Arrangement, metrics: Sequence[str]) -> list[Growth]:

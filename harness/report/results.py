@@ -15,6 +15,7 @@ from harness.report.accuracy.experiment import ExperimentAccuracy, accuracy_of
 from harness.report.backends.comparisons import Comparisons
 from harness.report.backends.correctness import correctness, newest
 from harness.report.experiment import ExperimentPage
+from harness.report.family import Family
 from harness.report.stability.matrix import Matrix, matrix
 from harness.report.sweeps.difference import Difference
 from harness.report.sweeps.page import newest_difference
@@ -55,9 +56,15 @@ class Results:
                     correctness(compared).wrong,
                     pages,
                     self.database,
+                    self.family,
                 )
             )
         return pages
+
+    @cached_property
+    def family(self) -> Family:
+        """All comparisons of the report."""
+        return Family(lambda: [(page.record, page.measured) for page in self.pages])
 
     @cached_property
     def compared(self) -> Comparisons:

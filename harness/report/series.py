@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from harness.measure.noise import FALSE_RATE, Control
+from harness.measure.resolution import Resolution
 from harness.report.methods import method_label
 from harness.report.point import METHOD, MeasuredPoint
 from harness.report.words import is_noisy
@@ -48,19 +50,22 @@ class Series:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """An experiment's series over its x leaf; x is None where nothing is swept."""
+    """An experiment's series over its x leaf; x is None where nothing is swept.
+
+    `controls` are those of each clock, and `level` is the largest p-value at which two points are told apart.
+    """
 
     x: str | None
     x_values: tuple[Any, ...]
     series: tuple[Series, ...]
     panel_leaf: str | None
     metrics: tuple[str, ...]
-    floors: Mapping[str, float] = field(default_factory=dict)
-    controls: int = 0
+    controls: Mapping[str, Control] = field(default_factory=dict)
+    level: float = FALSE_RATE
 
-    def floor(self, metric: str) -> float:
-        """How far apart, relatively, two equal points may seem in this metric; 0 where no control tells."""
-        return self.floors.get(metric, 0.0)
+    def resolution(self, metric: str) -> Resolution:
+        """What difference in a metric is called one."""
+        return Resolution(self.controls.get(metric), self.level, exact=not is_noisy(metric))
 
     @property
     def noise(self) -> Noise:

@@ -1,8 +1,14 @@
-"""Fly a short scene again until its clocks mean something.
+"""Warm a scene before it is timed, and fly a short one again until its clocks mean something.
 
-A run of a few microseconds is mostly noise: of the clock, of caches, of the first touch of memory. It is flown again in
-its own process, with the backend as it was loaded, until the sample is long enough. Clocks are then means over all
-flights; everything else, counters above all, is what the first flight alone has counted.
+The first flight of a process is slower than later ones: it reads code and touches memory for the first time, twice as
+slow for methods that run in a few kernels and hardly at all for those that call a library for every pair. So the
+beginning of the scene is flown outside of every clock, by the same rule for every method: as long as a short sample
+takes, and no longer than the whole scene.
+
+What a run has loaded for itself is still touched for the first time in its first flight, and a run of a few
+microseconds is mostly noise of the clock besides. So all but long runs are flown again, in their own process, with the
+backend as it was loaded, once and until the sample is long enough. Clocks are then means over all flights but the
+first; everything else, counters above all, is what the first flight has counted.
 """
 
 from __future__ import annotations
@@ -10,13 +16,38 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from statistics import fmean, harmonic_mean
-from time import perf_counter
+from time import perf_counter, process_time
 
 from harness.measure.metrics import METRICS
 from harness.motion.hits import Outcome
+from harness.motion.law import MotionLaw
 
 LONG_ENOUGH = 0.01  # s of CPU time in the motion loop
+COLD_UNTIL = 0.1  # s of CPU time from which on what a first flight takes longer, about a millisecond, no longer counts
+SHORTEST = 64  # the first flight that warms flies that part of the scene
+MOST_WARMING = 16  # flights that warm, of which the last ten are whole
 MOST_ELAPSED = 0.02  # s that the flights after the first may take with all that is around their loops
+
+
+def warm(fly: Callable[[MotionLaw], object], law: MotionLaw) -> int:
+    """Fly the beginning of a scene, twice as much of it each time, until that has taken as long as a sample must.
+
+    Parameters
+    ----------
+    fly : one flight from the start, under a law that may end sooner
+    law : of the run
+
+    Returns
+    -------
+    int
+        How many flights there were: of a scene with frames of a second each, one of a single frame.
+    """
+    began = process_time()
+    flights = 0
+    while flights < MOST_WARMING and process_time() - began < LONG_ENOUGH:
+        fly(law.beginning(min(1.0, 2.0**flights / SHORTEST)))
+        flights += 1
+    return flights
 
 
 def fly_long_enough(fly: Callable[[], Outcome]) -> tuple[Outcome, int]:
@@ -29,21 +60,20 @@ def fly_long_enough(fly: Callable[[], Outcome]) -> tuple[Outcome, int]:
     Returns
     -------
     Outcome
-        Of the first flight, its clocks replaced by means over all flights.
+        Of the first flight, its clocks replaced by means over those that follow, where there are any.
     int
         How many there were.
     """
-    outcomes = [fly()]
-    began = perf_counter()
-    sampled = outcomes[0].metrics["run_seconds"]
-    while sampled < LONG_ENOUGH and perf_counter() - began < MOST_ELAPSED:
-        outcomes.append(fly())
-        sampled += outcomes[-1].metrics["run_seconds"]
-    first = outcomes[0]
-    if len(outcomes) == 1:
+    first = fly()
+    if first.metrics["run_seconds"] >= COLD_UNTIL:
         return first, 1
-    means = {name: _mean(name, outcomes) for name in first.metrics if METRICS[name].clock}
-    return replace(first, metrics=first.metrics | means), len(outcomes)
+    began, sampled = perf_counter(), 0.0
+    later: list[Outcome] = []
+    while sampled < LONG_ENOUGH and perf_counter() - began < MOST_ELAPSED:
+        later.append(fly())
+        sampled += later[-1].metrics["run_seconds"]
+    means = {name: _mean(name, later) for name in first.metrics if METRICS[name].clock}
+    return replace(first, metrics=first.metrics | means), 1 + len(later)
 
 
 def _mean(name: str, outcomes: list[Outcome]) -> float:

@@ -1,8 +1,8 @@
 """Which runs a sweep has to do, and in what order.
 
 Blocks of one repeat of every point, each in random order, so that a drift of the machine affects all points alike.
-Where methods are compared, each block holds a control as well: one of its runs once more. How far two equal runs differ
-is the noise of the machine, and no smaller difference of two methods is reported.
+Where methods are compared, or a ratio of two points is claimed, each block holds a control as well: one of its runs
+once more. How far two equal runs differ is the noise of the machine, and no smaller difference is reported.
 """
 
 from __future__ import annotations
@@ -111,10 +111,13 @@ def schedule(
 def _controlled_point(experiment: Experiment, points: Sequence[Point], repeat: int) -> Point | None:
     """The point whose run of this repeat is done twice: another for each repeat, at equal steps over the experiment.
 
-    None where no methods are compared, or with too few repeats for an interval.
+    None where nothing is compared, or with too few repeats for an interval.
     """
     repeats = experiment.measure.repeats
-    if not points or repeats < FEWEST_FOR_INTERVAL or not set(experiment.swept).intersection(METHOD_LEAVES):
+    compares = bool(set(experiment.swept).intersection(METHOD_LEAVES)) or any(
+        criterion.ratio_to is not None for criterion in (*experiment.claims, *experiment.expect)
+    )
+    if not points or repeats < FEWEST_FOR_INTERVAL or not compares:
         return None
     return points[(2 * repeat + 1) * len(points) // (2 * repeats)]
 

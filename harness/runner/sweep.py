@@ -19,6 +19,7 @@ from harness.experiment.criterion import Criterion
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import fingerprint, machine_facts, package_versions, source_commit
 from harness.measure.metrics import METRICS
+from harness.measure.noise import Control, controls_of
 from harness.measure.verdicts import expected_refusals, judge
 from harness.motion.hits import Trace
 from harness.runner.estimate import Estimate
@@ -33,7 +34,7 @@ from harness.scene.mesh import Mesh
 from harness.store.database import Database
 from harness.store.history import History
 from harness.store.records import PointRow, RunRecord, VerdictKind, VerdictRow
-from harness.store.tables import run_table, runs
+from harness.store.tables import controls, run_records, run_table, runs
 
 Meshes = Mapping[Path, Mesh]
 
@@ -196,8 +197,9 @@ def sweep(
     refused: set[tuple[str, int]] = set()
     for experiment in experiments:
         table = runs(database.path, [experiment.name])
-        expectations = [_verdict(criterion, table, experiment, "expectation") for criterion in experiment.expect]
-        claims = [_verdict(criterion, table, experiment, "claim") for criterion in experiment.claims]
+        known = _controls(database.path, experiment.name)
+        expectations = [_verdict(row, table, experiment, "expectation", known) for row in experiment.expect]
+        claims = [_verdict(row, table, experiment, "claim", known) for row in experiment.claims]
         database.add_verdicts(number, listed[experiment.name], "expectation", expectations)
         database.add_verdicts(number, listed[experiment.name], "claim", claims)
         summary.broken += [(experiment.name, row.statement) for row in expectations if row.verdict == "fails"]
@@ -332,7 +334,20 @@ def _listing(experiment: Experiment, keys: Mapping[int, str], meshes: Meshes) ->
     }
 
 
-def _verdict(criterion: Criterion, table: pd.DataFrame, experiment: Experiment, kind: VerdictKind) -> VerdictRow:
-    verdict = judge(criterion, table, experiment.swept, kind)
+def _controls(path: str | Path, experiment: str) -> dict[str, Control]:
+    """What the controls of an experiment tell of each clock."""
+    first = {(run.point, run.repeat, run.machine): run.metrics for run in run_records(path, [experiment])}
+    again = [((found.point, found.repeat, found.machine), found.metrics) for found in controls(path, [experiment])]
+    return controls_of(first, again)
+
+
+def _verdict(
+    criterion: Criterion,
+    table: pd.DataFrame,
+    experiment: Experiment,
+    kind: VerdictKind,
+    known: Mapping[str, Control],
+) -> VerdictRow:
+    verdict = judge(criterion, table, experiment.swept, kind, known)
     row = criterion.model_dump(mode="json", exclude_none=True)
     return VerdictRow(row, verdict.verdict, verdict.statement, verdict.detail)

@@ -1,37 +1,30 @@
-"""Crossovers against power laws whose crossing is known."""
+"""A crossing is known to lie between two measured x, at each of which somebody is ahead; nothing more is said."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from harness.measure.crossover import crossover
-
-XS = (4.0, 8.0, 16.0, 32.0, 64.0)
+from harness.measure.crossover import Crossover, crossover
 
 
-def power(factor, exponent, noise=(1.0,)):
-    return {x: {repeat: factor * x**exponent * by for repeat, by in enumerate(noise)} for x in XS}
+def leaders(text):
+    return {float(2**place): "" if who == "-" else who for place, who in enumerate(text)}
 
 
-@given(st.floats(5, 60))
-def test_two_power_laws_cross_where_their_formulas_do(at):
-    found = crossover(power(1.0, 2.0), power(at, 1.0))
-    assert found.ahead == "b"
-    assert found.at.median == pytest.approx(at, rel=1e-9)
+@pytest.mark.parametrize(
+    ("told", "found"),
+    [
+        ("aabb", Crossover("b", 4.0, 2.0, False)),
+        ("a-bb", Crossover("b", 4.0, 1.0, False)),
+        ("a--b", Crossover("b", 8.0, 1.0, False)),
+        ("--bb", Crossover("b", 4.0, None, False)),
+        ("baab", Crossover("b", 8.0, 4.0, False)),
+        ("bbbb", Crossover("b", 1.0, None, True)),
+        ("b-bb", Crossover("b", 4.0, None, False)),
+    ],
+)
+def test_the_last_crossing_lies_between_the_last_two_that_are_told_apart(told, found):
+    assert crossover(leaders(told)) == found
 
 
-def test_the_interval_is_that_of_the_repeats():
-    found = crossover(power(1.0, 2.0, (1, 1, 1, 1, 1)), power(1.0, 1.0, (10, 11, 12, 13, 14)))
-    assert (found.at.median, found.at.low, found.at.high) == pytest.approx((12, 10, 14))
-
-
-def test_methods_that_never_cross_say_who_is_ahead():
-    assert crossover(power(1.0, 1.0), power(2.0, 1.0)) == crossover(power(1.0, 1.0), power(3.0, 1.0))
-    assert crossover(power(1.0, 1.0), power(2.0, 1.0)).ahead == "a"
-    assert crossover(power(1.0, 1.0), power(2.0, 1.0)).at is None
-
-
-def test_nothing_is_said_where_nothing_is_shared():
-    assert crossover({4.0: {0: 1.0}}, {4.0: {0: 1.0}}) is None
-    assert crossover(power(1, 1), {}) is None
-    assert crossover({4.0: {0: 1.0}, 8.0: {0: 1.0}}, {4.0: {1: 1.0}, 8.0: {1: 1.0}}) is None
+@pytest.mark.parametrize("told", ["", "a", "aab-", "----"])
+def test_nothing_is_said_where_nobody_is_ahead_at_the_largest_x(told):
+    assert crossover(leaders(told)) is None

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from harness.measure.noise import distinguishable, noise_floor
+from harness.measure.noise import Control, distinguishable, level, noise_floor, sign_test
+from harness.measure.resolution import Resolution
 from harness.measure.statistics import paired_ratio, summary
 
 NOISES = {
@@ -65,3 +66,53 @@ def test_the_floor_is_how_far_equal_runs_typically_are_apart_whichever_is_the_sl
 def test_fewer_than_five_pairs_tell_no_floor():
     assert noise_floor([1.0] * 4, [1.1] * 4) is None
     assert noise_floor([], []) is None
+
+
+QUIET = Control((0.001, 0.002, 0.003, 0.004, 0.005))
+
+
+@pytest.mark.parametrize(
+    ("ratios", "chance"),
+    [
+        ([1.1, 1.1, 1.1, 1.1, 1.1], 1 / 16 / 252),  # beyond all five of the control, which five of ten are once in 252
+        ([1.1, 1.1, 1.1, 1.1, 1.0045], 1 / 16 / 42),  # beyond four of them
+        ([1.0005] * 5, 1 / 16),  # beyond none: five coins alike
+        ([1.1, 1.1, 1.1, 1.1, 0.9], 1.0),
+    ],
+)
+def test_a_sign_test_against_the_control_is_exact(ratios, chance):
+    assert sign_test(np.sort(np.log(ratios)), QUIET) == pytest.approx(chance)
+    assert sign_test(np.sort(-np.log(ratios)), QUIET) == pytest.approx(chance)
+
+
+@pytest.mark.parametrize(("n", "controls"), [(5, 5), (6, 6), (9, 5), (20, 20)])
+def test_a_p_value_of_equals_is_no_smaller_than_it_says(n, controls):
+    """Even of Cauchy noise, which has no mean."""
+    rng = np.random.default_rng(n)
+    found = []
+    for _ in range(2000):
+        known = Control(tuple(sorted(np.abs(rng.standard_cauchy(controls)))))
+        found.append(sign_test(np.sort(rng.standard_cauchy(n)), known))
+    for chance in (0.1, 0.05, 0.01):
+        assert np.mean(np.array(found) <= chance) <= chance * 1.2
+
+
+def test_the_level_is_that_of_benjamini_and_hochberg():
+    assert level([0.01, 0.02, 0.9, 0.03]) == 0.03  # the third of four may be 0.0375
+    assert level([0.01, 0.9, 0.9, 0.03]) == 0.01
+    assert level([0.02, 0.9, 0.9, 0.9]) == 0.0
+    assert level([]) == 0.05
+
+
+@pytest.mark.parametrize("repeats", [1, 2, 3, 4])
+def test_nothing_is_told_of_fewer_than_five_repeats(repeats):
+    assert Resolution(QUIET).tell([2.0] * repeats) == "few"
+
+
+def test_nothing_is_told_without_a_control_and_everything_of_counts():
+    assert Resolution(None).tell([2.0] * 5) == "uncontrolled"
+    assert Resolution(QUIET).tell([2.0, 2.1, 2.0, 2.1, 2.0]) == "apart"
+    assert Resolution(QUIET).tell([2.0, 2.1, 2.0, 2.1, 0.9]) == "same"
+    assert Resolution(QUIET, level=1e-6).tell([2.0, 2.1, 2.0, 2.1, 2.0]) == "same"
+    assert Resolution(exact=True).tell([1.001]) == "apart"
+    assert Resolution(exact=True).tell([1.0]) == "same"

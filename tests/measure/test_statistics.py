@@ -216,3 +216,35 @@ def test_the_geometric_mean_of_ratios_turns_over_with_them(values: list[float]) 
 def test_a_geometric_mean_needs_positive_numbers(values: list[float]) -> None:
     with pytest.raises(ValueError, match="above 0"):
         geometric_mean(values)
+
+
+@pytest.mark.parametrize(
+    ("scales", "xs"),
+    [
+        ((0.2, 0.1, 0.05, 0.02, 0.01), (5, 10, 20, 40, 80)),  # short runs are noisier
+        ((0.3, 0.01, 0.01, 0.01), (5, 10, 20, 40)),
+        ((0.03, 0.03, 0.03), (5, 10, 50)),
+        (tuple(np.geomspace(0.2, 0.01, 10)), tuple(range(5, 55, 5))),
+    ],
+)
+@pytest.mark.parametrize("repeats", [5, 10])
+def test_an_interval_of_an_exponent_covers_it_however_the_noise_is_spread(
+    scales: tuple[float, ...], xs: tuple[int, ...], repeats: int
+) -> None:
+    rng = np.random.default_rng([repeats, len(xs)])
+    held = []
+    for _ in range(600):
+        noise = rng.normal(0.0, 0.1, (repeats, 1)) + rng.normal(0.0, scales, (repeats, len(xs)))
+        times = np.array(xs) ** 1.7 * np.exp(noise)
+        found = fit_exponent({x: list(column) for x, column in zip(xs, times.T, strict=True)})
+        held.append(found.low <= 1.7 <= found.high)
+    assert np.mean(held) >= 0.93
+
+
+def test_growth_that_is_no_power_law_has_the_interval_of_its_scatter() -> None:
+    """x + 30 grows as 1.00 at large x and as 0.1 at small: no noise of repeats says so."""
+    noise = np.array([1.0, 1.001, 0.999, 1.002, 0.998])
+    curved = fit_exponent({x: list((x + 30) * noise) for x in (5, 10, 20, 40, 80)})
+    assert curved.high - curved.low > 0.3
+    straight = fit_exponent({x: list(x**1.5 * noise) for x in (5, 10, 20, 40, 80)})
+    assert straight.high - straight.low < 0.01

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from harness.measure.noise import Control
 from harness.measure.verdicts import Kind, Verdict, expected_refusals, judge
 
 
@@ -322,15 +323,46 @@ def test_ratios_are_paired_by_repeat() -> None:
 
 
 def test_repeats_without_a_partner_are_left_out() -> None:
+    drift = np.array([1.0, 3.0, 2.0, 7.0, 5.0, 4.0, 6.0])
     runs = table(
-        {"algorithm": "brute", "run_seconds": list(2.0 * DRIFT), "lost": [0]},
-        {"algorithm": "grid", "run_seconds": list(DRIFT), "lost": [4]},
+        {"algorithm": "brute", "run_seconds": list(2.0 * drift), "lost": [0]},
+        {"algorithm": "grid", "run_seconds": list(drift), "lost": [4]},
     )
     row = Row("run_seconds", ratio_to={"algorithm": "brute"}, at_most=0.6)
     verdict = judged(row, runs, "algorithm")
-    assert (verdict.verdict, verdict.groups[0].n) == ("holds", 3)
-    assert "2 of 10 runs have no result" in verdict.statement
+    assert (verdict.verdict, verdict.groups[0].n) == ("holds", 5)
+    assert "2 of 14 runs have no result" in verdict.statement
     assert expected(row, runs, "algorithm").verdict == "fails"
+
+
+@pytest.mark.parametrize("repeats", [1, 2, 3, 4])
+def test_a_ratio_of_clocks_from_fewer_than_five_repeats_is_undecided(repeats: int) -> None:
+    runs = table(*timed(brute=[2.0] * repeats, grid=[1.0] * repeats))
+    verdict = judged(Row("run_seconds", ratio_to={"algorithm": "brute"}, at_most=0.6), runs, "algorithm")
+    assert verdict.verdict == "undecided"
+    assert "too few pairs of repeats to judge (fewer than 5)" in verdict.statement
+
+
+def test_a_ratio_of_counts_needs_no_repeats() -> None:
+    runs = table({"algorithm": "a", "pair_tests": [2.0]}, {"algorithm": "b", "pair_tests": [1.0]})
+    row = Row("pair_tests", {"algorithm": "b"}, ratio_to={"algorithm": "a"}, at_most=0.6)
+    assert judged(row, runs, "algorithm").verdict == "holds"
+
+
+@pytest.mark.parametrize(
+    ("controls", "outcome", "said"),
+    [
+        ({}, "undecided", "without a control to judge its noise by"),
+        ({"run_seconds": Control((0.01,) * 5)}, "holds", "claimed at most 0.55"),
+        ({"run_seconds": Control((math.log(1.2),) * 5)}, "undecided", "by less than the noise floor of 20 %"),
+    ],
+)
+def test_a_ratio_of_clocks_keeps_the_noise_floor(controls: Mapping[str, Control], outcome: str, said: str) -> None:
+    runs = table(*timed(brute=list(2.0 * DRIFT), grid=list(DRIFT)))
+    row = Row("run_seconds", {"algorithm": "grid"}, ratio_to={"algorithm": "brute"}, at_most=0.55)
+    verdict = judge(row, runs, ["algorithm"], "claim", controls)
+    assert verdict.verdict == outcome
+    assert said in verdict.statement
 
 
 def test_only_points_that_differ_just_there_are_compared_and_each_must_satisfy() -> None:

@@ -140,10 +140,22 @@ def write(path: Path, experiments: Sequence[Invented]) -> Path:
                         {name: (value, METRICS[name].unit) for name, value in metrics.items()} if status == "ok" else {}
                     )
                     database.add_run(sweep, point.key, repeat, status, reason, None, kept, True)
+            add_controls(database, sweep, invented, points)
             database.add_verdicts(sweep, number, "claim", invented.claims)
             database.add_verdicts(sweep, number, "expectation", invented.expectations)
         database.finish_sweep(sweep)
     return path
+
+
+def add_controls(database: Database, sweep: int, invented: Invented, points: Sequence[PointRow]) -> None:
+    """Of each repeat one run once more, where there are five, as a sweep does it."""
+    rng = np.random.default_rng(2)
+    for repeat in range(invented.repeats if invented.repeats >= 5 else 0):
+        point = points[(2 * repeat + 1) * len(points) // (2 * invented.repeats)]
+        metrics = measure(point.parameters, rng)
+        status, _ = invented.fate(point.parameters, repeat, metrics) or ("ok", None)
+        clocks = {name: value for name, value in metrics.items() if METRICS[name].clock}
+        database.add_control(sweep, point.key, repeat, status, clocks if status == "ok" else {})
 
 
 def claim(verdict: str, statement: str, groups: int = 1, source: str | None = "homework B.1") -> VerdictRow:

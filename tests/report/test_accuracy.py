@@ -109,6 +109,18 @@ def test_the_ratio_to_the_next_method_has_its_interval(tmp_path):
     )
 
 
+def test_with_fewer_than_five_repeats_no_method_is_the_fastest_at_an_error(tmp_path):
+    few = Invented(**{**vars(ACCURACY), "swept": {"algorithm": ["brute-force", "grid"], "dt": STEPS[:3]}, "repeats": 3})
+    html = dict(render(write(tmp_path / "x.db", [few])))["accuracy.html"]
+    text = text_of(html).replace("\u00a0", " ")
+    assert "the CPU time is fcl brute-force (dt 1/60)" in text
+    assert "too few repeats to rank (fewer than 5 pairs)." in text
+    assert "cheaper than" not in text
+    assert " use grid" not in text
+    fastest = html[html.index("Fastest at an error") : html.index("Every setting, and the hits it saw")]
+    assert 'class="n best"' not in fastest
+
+
 def test_a_method_that_cannot_reach_an_error_says_how_far_it_came(pages):
     text = text_of(pages["accuracy.html"]).replace("\u00a0", " ")
     assert "125 µs at best" in text

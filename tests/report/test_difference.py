@@ -21,13 +21,13 @@ def results(tmp_path):
     path = tmp_path / "results.db"
 
     def sweep(factors, *, key="v1", tests=1.0, statuses=None, verdict="holds", grade=True, machine="m", finished=True,
-              control=1.01):  # fmt: skip
+              control=1.01, repeats=5):  # fmt: skip
         with Database.open(path) as database:
             number = database.begin_sweep("harness sweep", None, "0.1.0", {"fingerprint": machine}, {})
             points = [PointRow(f"{key}-{count}", {"count": count, "packing": count / 1e3}) for count in factors]
             specification = {"swept": ["count"], "claims": [CLAIM]}
             listed = database.list_experiment(number, "<b>", "T", None, "", specification, points)
-            for repeat, noise in enumerate(NOISE):
+            for repeat, noise in enumerate(NOISE[:repeats]):
                 for count, factor in factors.items():
                     status = (statuses or {}).get(count, "ok")
                     seconds = factor * count * noise
@@ -148,3 +148,45 @@ def test_the_report_has_a_page_of_it_once_there_is_something_to_compare(results)
     assert "<b>" not in page
     assert "<i>so" not in page
     assert difference(path).changed
+
+
+EIGHT = dict.fromkeys(range(1, 9), 1.0)
+
+
+def test_a_drift_of_the_whole_machine_slows_no_point(results, capsys):
+    results(EIGHT)
+    document = told(results(dict.fromkeys(EIGHT, 1.3)), "--fail-on", "slower", capsys=capsys)
+    assert set(paces(document).values()) == {"same"}
+    assert document["drift"] == pytest.approx(1.3)
+    assert document["points"][0]["ratio"]["median"] == pytest.approx(1.0)
+
+
+def test_a_point_that_is_slower_than_the_drift_is_called_slower(results, capsys):
+    results(EIGHT)
+    document = told(results({count: 1.8 if count == 3 else 1.3 for count in EIGHT}), capsys=capsys)
+    assert [count for count, pace in paces(document).items() if pace == "slower"] == [3]
+    assert document["counts"]["slower"] == 1
+
+
+def test_no_machine_drifts_by_more_than_a_factor_of_two(results, capsys):
+    results(EIGHT)
+    document = told(results(dict.fromkeys(EIGHT, 3.0)), "--fail-on", "slower", code=1, capsys=capsys)
+    assert document["counts"]["slower"] == 8
+    assert document["drift"] == 2.0
+
+
+def test_below_five_points_a_quarter_is_allowed_for_what_drifts(results, capsys):
+    results({2: 1.0, 4: 1.0})
+    document = told(results({2: 1.2, 4: 1.2}), "--fail-on", "slower", capsys=capsys)
+    assert (document["drift"], document["floor"]) == (None, 0.25)
+
+
+@pytest.mark.parametrize("repeats", [1, 2, 3, 4])
+def test_fewer_than_five_pairs_call_no_point_slower_and_their_span_is_a_range(results, capsys, repeats):
+    results(EIGHT, repeats=repeats)
+    path = results({count: 1.0 + count for count in EIGHT}, repeats=repeats)
+    document = told(path, "--fail-on", "slower", capsys=capsys)
+    assert set(paces(document).values()) == {"unknown"}
+    assert {point["ratio"]["coverage"] for point in document["points"]} == {None}
+    page = dict(render(path))["sweeps.html"]
+    assert page.count("(range)") == (8 if repeats > 1 else 0)

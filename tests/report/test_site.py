@@ -262,6 +262,53 @@ def test_the_fastest_is_named_with_how_far_it_is_ahead(report_of):
     assert 3.5 < float(ratio) < 4.5
 
 
+@pytest.mark.parametrize("repeats", [1, 3, 4])
+def test_with_fewer_than_five_repeats_nobody_is_ahead_and_the_range_is_said(report_of, repeats):
+    def slower(parameters, repeat, metrics):
+        metrics["pair_seconds"] *= 4 if parameters["backend"] == "pybullet" else 1
+
+    swept = {"count": [10, 40, 160], "backend": ["fcl", "pybullet"]}
+    pages = report_of(swept=swept, fate=slower, repeats=repeats)
+    html = page(pages, "x")
+    for text in map(text_of, (html, pages["index.html"], pages["findings.md"])):
+        assert "ahead of" not in text
+        assert "has the lowest" not in text
+        assert "they do not cross" not in text
+        assert "too few repeats to rank" in text
+    assert 'class="n best"' not in html
+    assert ("ms to" in text_of(html).replace("\u00a0", " ")) == (repeats > 1)
+
+
+def test_without_a_control_nobody_is_ahead(report_of, monkeypatch):
+    monkeypatch.setattr("tests.report.conftest.add_controls", lambda *_: None)
+
+    def slower(parameters, repeat, metrics):
+        metrics["pair_seconds"] *= 4 if parameters["backend"] == "pybullet" else 1
+
+    html = page(report_of(swept={"count": [10, 40], "backend": ["fcl", "pybullet"]}, fate=slower), "x")
+    assert "no control to rank by" in text_of(html)
+    assert "ahead of" not in html
+    assert 'class="n best"' not in html
+
+
+def test_nothing_is_said_of_a_quantity_that_is_not_there(report_of):
+    def no_walls(parameters, repeat, metrics):
+        metrics["box_seconds"] = 0.0
+
+    html = page(report_of(swept={"count": [10, 40], "backend": ["fcl", "pybullet"]}, fate=no_walls), "x")
+    findings = text_of(html[html.index('id="findings"') : html.index("</section>")])
+    assert "object/object test time" in findings
+    assert "object/wall" not in findings
+
+
+def test_the_report_links_the_page_of_how_far_to_trust_it(report_of):
+    pages = report_of(swept={"count": [10, 40], "backend": ["fcl", "pybullet"]})
+    assert pages["index.html"].count('href="trust.html"') == 2
+    text = text_of(pages["trust.html"]).replace("\u00a0", " ")
+    assert "a report of 60 experiments of equal methods names a winner" in text
+    assert "This report looks at" in text
+
+
 def test_a_busy_machine_is_flagged(report_of):
     def busy(parameters, repeat, metrics):
         metrics["run_seconds_elapsed"] = 2 * metrics["run_seconds"]

@@ -7,8 +7,9 @@ import math
 from markupsafe import Markup
 
 from harness.report.accuracy.texts import interval_text, knob_text, scene_of, target_text
-from harness.report.accuracy.tradeoffs import Tradeoff
+from harness.report.accuracy.tradeoffs import Costed, Tradeoff
 from harness.report.quantity import number, quantity
+from harness.report.ranking import unranked
 
 
 def decision(tradeoff: Tradeoff) -> Markup | None:
@@ -16,24 +17,40 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
     target = tradeoff.decided
     if target is None:
         return None
-    (curve, setting, _), *others = tradeoff.ratios(target)
-    text = Markup("For {} at an error of {}, use <strong>{}</strong>{}, {} of CPU time").format(
-        scene_of(tradeoff),
-        target_text(target),
-        curve.label,
-        knob_text(curve, setting),
-        quantity(setting.cost.median, "s"),
+    found = tradeoff.ratios(target)
+    best, *others = found
+    what = Markup("For {} at an error of {}, ").format(scene_of(tradeoff), target_text(target))
+    why_not = unranked(entry.told for entry in found)
+    if why_not:
+        costs = Markup(", ").join(_cost(entry) for entry in sorted(found, key=lambda entry: entry.curve.style))
+        return what + Markup("the CPU time is {}: {}.").format(costs, why_not)
+    text = what + Markup("use <strong>{}</strong>{}, {} of CPU time").format(
+        best.curve.label, knob_text(best.curve, best.setting), quantity(best.setting.cost.median, "s")
     )
-    tied = [other.label for other, _, ratio in others if tradeoff.tied(ratio)]
-    dearer = [(other, found, ratio) for other, found, ratio in others if not tradeoff.tied(ratio)]
+    tied = [entry.curve.label for entry in others if entry.tied]
+    dearer = [entry for entry in others if not entry.tied]
     if tied:
         text += Markup(", not to be told from {}").format(" and ".join(tied))
     if dearer:
-        other, found, ratio = dearer[0]
+        next_one = dearer[0]
         text += Markup(": <strong>{}×</strong>{} cheaper than {}{}").format(
-            number(ratio.median if ratio else math.nan), interval_text(ratio), other.label, knob_text(other, found)
+            number(next_one.ratio.median if next_one.ratio else math.nan),
+            interval_text(next_one.ratio),
+            next_one.curve.label,
+            knob_text(next_one.curve, next_one.setting),
         )
     short = [curve.label for curve in tradeoff.curves if curve.cheapest(target) is None]
     if short:
         text += Markup("; {} {} not reach it").format(", ".join(short), "does" if len(short) == 1 else "do")
     return text + Markup(".")
+
+
+def _cost(entry: Costed) -> Markup:
+    """What a method costs, with the range of its repeats."""
+    cost = entry.setting.cost
+    text = Markup("{}{} <strong>{}</strong>").format(
+        entry.curve.label, knob_text(entry.curve, entry.setting), quantity(cost.median, "s")
+    )
+    if cost.n > 1:
+        text += Markup(" ({} to {})").format(quantity(cost.low, "s"), quantity(cost.high, "s"))
+    return text

@@ -9,6 +9,7 @@ from harness.measure.statistics import CONFIDENCE
 from harness.report.accuracy.texts import WRONG_TEXT, knob_text, scene_of, target_text, time_text
 from harness.report.accuracy.tradeoffs import MOST_WRONG, TARGETS, Curve, Tradeoff
 from harness.report.quantity import exponent_text, leaf_text, number, scale
+from harness.report.ranking import unranked
 from harness.report.series import Arrangement
 from harness.report.table import Column, Entry, Table, counted, measured, plain, words
 from harness.report.tables.naming import heading, place_of
@@ -25,18 +26,21 @@ def fastest(tradeoff: Tradeoff) -> Table:
     """The CPU time of every method at every error, at its cheapest setting that reaches it."""
     unit = scale([found.cost.median for _, found in tradeoff.settings], "s")
     rows = []
+    reasons: dict[str, None] = {}  # why errors have no cheapest method
     for target in TARGETS:
-        reached = {curve.label: (found, ratio) for curve, found, ratio in tradeoff.ratios(target)}
+        reached = {entry.curve.label: entry for entry in tradeoff.ratios(target)}
+        why_not = unranked(entry.told for entry in reached.values())
+        reasons |= {why_not: None} if why_not else {}
         row = [Entry(target_text(target), numeric=False, sort=target)]
         for curve in tradeoff.curves:
             if curve.label not in reached:
                 row.append(Entry("", flag=_why_not(curve), sort=math.inf))
                 continue
-            found, ratio = reached[curve.label]
+            found = reached[curve.label].setting
             half = (found.cost.high - found.cost.low) / 2
             margin = f"±{unit.margin(found.cost.median, half)}" if half > 0 else ""
             small = ", ".join(part for part in (margin, knob_text(curve, found).strip(" ()")) if part)
-            mark = "best" if tradeoff.tied(ratio) else ""
+            mark = "best" if reached[curve.label].tied and not why_not else ""
             row.append(Entry(unit.text(found.cost.median), small, mark=mark, sort=plain(found.cost.median)))
         rows.append(tuple(row))
     columns = (Column("Error", numeric=False), *(Column(curve.label, unit.symbol) for curve in tradeoff.curves))
@@ -45,6 +49,8 @@ def fastest(tradeoff: Tradeoff) -> Table:
         "half its interval and its setting. Bold: cheapest, or not to be told from it. A method that misses more than "
         f"{WRONG_TEXT} of the hits, or reports as many that are none, does not reach any error."
     )
+    if reasons:
+        note += f" Nothing is bold for {', or '.join(reasons)}."
     return Table(f"Fastest at an error: {scene_of(tradeoff)}", note, columns, tuple(rows))
 
 

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from harness.measure.noise import distinguishable
+from harness.measure.resolution import Outcome, Resolution
 from harness.measure.statistics import Exponent, Summary, fit_exponent
 from harness.report.methods import method_label
 from harness.report.point import MeasuredPoint
-from harness.report.ranking import times_worse
+from harness.report.ranking import times_worse, told
 from harness.report.series import Arrangement
 from harness.report.words import leaf_label
 from harness.store.records import ExperimentRecord
@@ -91,13 +91,34 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
+class Costed:
+    """A method at its cheapest setting that reaches an error.
+
+    Parameters
+    ----------
+    ratio : how many times it costs what the cheapest method costs; None of that itself, and where nothing can be paired
+    told : whether that ratio is told from 1
+    """
+
+    curve: Curve
+    setting: Setting
+    ratio: Summary | None
+    told: Outcome
+
+    @property
+    def tied(self) -> bool:
+        """Whether it is the cheapest, or cannot be told apart from it."""
+        return self.told != "apart"
+
+
+@dataclass(frozen=True, eq=False)
 class Tradeoff:
     """All methods on one scene of one experiment; `place` sets the scene apart from the others of the experiment."""
 
     record: ExperimentRecord
     place: str
     curves: tuple[Curve, ...]
-    floor: float
+    resolution: Resolution
 
     @property
     def settings(self) -> list[tuple[Curve, Setting]]:
@@ -126,17 +147,18 @@ class Tradeoff:
         found = [(curve, cheapest) for curve in self.curves if (cheapest := curve.cheapest(target)) is not None]
         return sorted(found, key=lambda entry: entry[1].cost.median)
 
-    def ratios(self, target: float) -> list[tuple[Curve, Setting, Summary | None]]:
+    def ratios(self, target: float) -> list[Costed]:
         """The same, each with how many times it costs what the first costs."""
         ranked = self.ranked(target)
+        if not ranked:
+            return []
+        best = ranked[0][1].point
         return [
-            (curve, found, None if place == 0 else times_worse(found.point, ranked[0][1].point, COST))
+            Costed(curve, found, times_worse(found.point, best, COST), told(found.point, best, COST, self.resolution))
+            if place
+            else Costed(curve, found, None, "same")
             for place, (curve, found) in enumerate(ranked)
         ]
-
-    def tied(self, ratio: Summary | None) -> bool:
-        """Whether a ratio to the first is not distinguishable from 1."""
-        return ratio is None or not distinguishable(ratio, self.floor)
 
     @property
     def decided(self) -> float | None:
@@ -160,7 +182,7 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
         curves = _curves(points)
         if curves:
             place = ", ".join(leaf_label(leaf, points[0].parameters.get(leaf)) for leaf in leaves)
-            found.append(Tradeoff(record, place, curves, arrangement.floor(COST)))
+            found.append(Tradeoff(record, place, curves, arrangement.resolution(COST)))
     return found
 
 

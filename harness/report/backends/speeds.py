@@ -4,70 +4,92 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
-import pandas as pd
 
+from harness.measure.resolution import Resolution
 from harness.report.backends.correctness import Correctness
-from harness.report.methods import methods_of
+from harness.report.experiment import ExperimentPage
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import number, plural, scale
+from harness.report.ranking import told, unranked
 from harness.report.table import Column, Entry, Table, plain, words
 from harness.vocabulary import MethodName
 
 SPEED = "pair_seconds_per_frame"
 _NOTE = (
-    "CPU time of pair detection a frame, medians, poses included; the fastest of those that are right is bold. A "
-    "method that was proven wrong on this shape, or failed, is struck through and has no rank; nor has one that was "
-    "compared with no other."
+    "CPU time of pair detection a frame, medians, poses included. Of those that are right the fastest is bold, and "
+    "what cannot be told from it. A method that was proven wrong on this shape, or failed, is struck through and has "
+    "no rank; nor has one that was compared with no other."
 )
 
 # What tells the scenes of a table apart: values of leaves.
-Place = tuple[Any, ...]
+Place = tuple[float, ...]
 
 
-def speed_table(name: str, runs: pd.DataFrame, known: Correctness) -> Table | None:
+def speed_table(page: ExperimentPage, known: Correctness) -> Table | None:
     """The methods of an experiment, a column a scene; None where there is nothing to choose between.
 
     Parameters
     ----------
-    name : of the experiment
-    runs : of all experiments
+    page : of the experiment
     known : how right each method is
     """
-    if SPEED not in runs.columns:
+    points = [point for point in page.arrangement.points if point.summary(SPEED) is not None]
+    if len({point.parameters["backend"] for point in points}) < 2:
         return None
-    mine = runs[(runs["experiment"] == name) & (runs["status"] == "ok") & runs[SPEED].notna()]
-    if mine.empty or mine["backend"].nunique() < 2:
-        return None
-    scenes = [leaf for leaf in ("count", "packing") if mine[leaf].nunique() > 1]
-    medians = _medians(mine, scenes)
+    scenes = [leaf for leaf in ("count", "packing") if len({_scene_value(point, leaf) for point in points}) > 1]
+    measured: dict[Place, dict[MethodName, list[MeasuredPoint]]] = defaultdict(lambda: defaultdict(list))
+    for point in points:
+        place = tuple(_scene_value(point, leaf) for leaf in scenes)
+        measured[place][MethodName.of(point.parameters)].append(point)
+    medians = {
+        (place, method): float(np.median(np.concatenate([point.values(SPEED) for point in found])))
+        for place, methods in measured.items()
+        for method, found in methods.items()
+    }
     unit = scale(list(medians.values()), "s")
     methods = sorted({method for _, method in medians})
     columns = [Column("Method", numeric=False)]
     entries: dict[MethodName, list[Entry]] = {method: [] for method in methods}
-    for place in sorted({place for place, _ in medians}):
+    reasons: dict[str, None] = {}  # why scenes have no fastest method
+    for place in sorted(measured):
         columns.append(Column(_scene_text(scenes, place), unit.symbol))
-        right = [seconds for (at, method), seconds in medians.items() if at == place and known.is_right(method)]
-        best = min(right) if len(right) > 1 else math.nan
+        right = {method: found for method, found in measured[place].items() if known.is_right(method)}
+        best, why_not = _fastest(right, page.arrangement.resolution(SPEED))
+        reasons |= {why_not: None} if why_not else {}
         for method in methods:
             seconds = medians.get((place, method), math.nan)
-            mark = "best" if seconds == best and known.is_right(method) else ""
+            mark = "best" if method in best else ""
             text = "not run" if math.isnan(seconds) else unit.text(seconds)
             entries[method].append(Entry(text, mark=mark, struck=known.is_wrong(method), sort=plain(seconds)))
     columns.append(Column("Correctness", numeric=False))
     rows = tuple((words(_label(method, methods)), *entries[method], _correctness(method, known)) for method in methods)
-    return Table(name, _NOTE, tuple(columns), rows)
+    note = _NOTE + (f" Nothing is bold for {', or '.join(reasons)}." if reasons else "")
+    return Table(page.record.name, note, tuple(columns), rows)
 
 
-def _medians(runs: pd.DataFrame, scenes: Sequence[str]) -> dict[tuple[Place, MethodName], float]:
-    """s, of every scene and method."""
-    found: dict[tuple[Place, MethodName], list[float]] = defaultdict(list)
-    places = zip(*(runs[leaf] for leaf in scenes), strict=True) if scenes else [()] * len(runs)
-    for place, method, seconds in zip(places, methods_of(runs), runs[SPEED], strict=True):
-        found[place, method].append(float(seconds))
-    return {key: float(np.median(values)) for key, values in found.items()}
+def _fastest(
+    measured: Mapping[MethodName, Sequence[MeasuredPoint]], resolution: Resolution
+) -> tuple[Collection[MethodName], str]:
+    """Of the methods of a scene the fastest, with those not to be told from it; or why none is called that."""
+    if len(measured) < 2:
+        return (), ""
+    if any(len(points) > 1 for points in measured.values()):
+        return (), "several scenes in one column"
+    points = {method: found[0] for method, found in measured.items()}
+    best = min(points, key=lambda method: points[method].median(SPEED))
+    outcomes = {
+        method: told(point, points[best], SPEED, resolution) for method, point in points.items() if method != best
+    }
+    why_not = unranked(outcomes.values())
+    return ((), why_not) if why_not else ({best, *(m for m, outcome in outcomes.items() if outcome != "apart")}, "")
+
+
+def _scene_value(point: MeasuredPoint, leaf: str) -> float:
+    value = point.parameters.get(leaf)
+    return float(value) if isinstance(value, int | float) else -1.0
 
 
 def _label(method: MethodName, methods: Sequence[MethodName]) -> str:
@@ -84,7 +106,7 @@ def _correctness(method: MethodName, known: Correctness) -> Entry:
     return words(f"never wrong in {plural(known.verdicts[method], 'verdict')}")
 
 
-def _scene_text(leaves: Sequence[str], values: Sequence[Any]) -> str:
+def _scene_text(leaves: Sequence[str], values: Sequence[float]) -> str:
     parts = []
     for leaf, value in zip(leaves, values, strict=True):
         parts.append(f"packing {float(f'{value:.2g}'):g}" if leaf == "packing" else f"{number(value)} bodies")

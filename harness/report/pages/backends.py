@@ -17,8 +17,9 @@ def _content(results: Results) -> Content | None:
     if not compared.records:
         return None
     known = correctness(compared.records)
-    names = sorted({record.experiment for record in compared.records})
-    speeds = [table for name in names if (table := speed_table(name, results.runs, known)) is not None]
+    names = {record.experiment for record in compared.records}
+    pages = sorted((page for page in results.pages if page.record.name in names), key=lambda page: page.record.name)
+    speeds = [table for page in pages if (table := speed_table(page, known)) is not None]
     figures, cases = figures_of("backends", compared), shown_cases(compared)
     approximations, flights = tables.approximations(compared), tables.flights(compared)
     contents = (

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator
 from itertools import combinations
 
 from markupsafe import Markup
 
-from harness.measure.crossover import Crossover, crossover
+from harness.measure.crossover import Crossover, Leader, crossover
+from harness.measure.resolution import Resolution
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import number
+from harness.report.ranking import told
 from harness.report.series import Arrangement, Series
 from harness.report.words import is_noisy, metric_title, more_is_better
 
@@ -17,37 +20,53 @@ _MOST = 12
 
 
 def crossing_sentences(arrangement: Arrangement) -> list[Markup]:
-    """A sentence for each pair of series of a panel, on the first clock; nothing where x is no number."""
+    """A sentence for each pair of series of a panel, on the first clock; nothing where x is no number.
+
+    Nothing either of two that cannot be told apart at the largest x.
+    """
+    found = [_sentence(str(arrangement.x), metric, a, b, crossing) for metric, a, b, crossing in crossings(arrangement)]
+    return found if len(found) <= _MOST else []
+
+
+def crossings(arrangement: Arrangement) -> Iterator[tuple[str, Series, Series, Crossover]]:
+    """The crossovers themselves: the clock, the two series, and where they cross."""
     clocks = [metric for metric in arrangement.metrics if is_noisy(metric) and not more_is_better(metric)]
     if not arrangement.numeric or arrangement.x is None or not clocks:
-        return []
-    found = []
+        return
+    resolution = arrangement.resolution(clocks[0])
     for panel in arrangement.panels:
         lines = [series for series in arrangement.series if series.panel == panel]
         for a, b in combinations(lines, 2):
-            if not a.shares_scenes_with(b):
-                continue
-            crossing = crossover(_costs(a, clocks[0]), _costs(b, clocks[0]))
-            if crossing is not None:
-                found.append(_sentence(arrangement.x, clocks[0], a, b, crossing))
-    return found if len(found) <= _MOST else []
+            if a.shares_scenes_with(b):
+                crossing = crossover(_leaders(a, b, clocks[0], resolution))
+                if crossing is not None:
+                    yield clocks[0], a, b, crossing
 
 
 def _sentence(x: str, metric: str, a: Series, b: Series, crossing: Crossover) -> Markup:
     winner, loser = (a, b) if crossing.ahead == "a" else (b, a)
-    at = crossing.at
     outcome = Markup("{} has a lower {} than {}").format(winner.label, metric_title(metric), loser.label)
     where = f", {a.panel}" if a.panel else ""
-    if at is None:
-        return Markup("At every {} measured{}, {}: they do not cross.").format(x, where, outcome)
-    interval = f" [{number(at.low)}, {number(at.high)}]" if at.n > 1 else ""
-    return Markup("From {} <strong>{}</strong>{}{} on, {}.").format(x, number(at.median), interval, where, outcome)
+    if crossing.everywhere:
+        return Markup("At every {} measured{}, {}: they do not cross there.").format(x, where, outcome)
+    text = Markup("From {} <strong>{}</strong>{} on, {}").format(x, number(crossing.by), where, outcome)
+    if crossing.after is None:
+        return text + Markup("; at smaller ones they cannot always be told apart.")
+    return text + Markup("; at {} it is the other way round: they cross between <strong>{}</strong> and {}.").format(
+        number(crossing.after), number(crossing.after), number(crossing.by)
+    )
 
 
-def _costs(series: Series, metric: str) -> dict[float, dict[tuple[int, str], float]]:
-    pairs: Sequence[tuple[float, dict[tuple[int, str], float]]] = [
-        (float(x), {place: value for place, value in point.by_place(metric).items() if value > 0})
-        for point, x in zip(series.points, series.x, strict=True)
-        if not point.is_wrong
-    ]
-    return {x: costs for x, costs in pairs if costs and math.isfinite(x)}
+def _leaders(a: Series, b: Series, metric: str, resolution: Resolution) -> dict[float, Leader]:
+    """Who is ahead at each x that both have a cost at."""
+    found: dict[float, Leader] = {}
+    for point, x in zip(a.points, a.x, strict=True):
+        other = b.at(x)
+        if other is not None and math.isfinite(x) and _has_cost(point, metric) and _has_cost(other, metric):
+            apart = told(point, other, metric, resolution) == "apart"
+            found[float(x)] = ("a" if point.median(metric) < other.median(metric) else "b") if apart else ""
+    return found
+
+
+def _has_cost(point: MeasuredPoint, metric: str) -> bool:
+    return not point.is_wrong and point.median(metric) > 0

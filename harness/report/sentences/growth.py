@@ -7,16 +7,22 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from harness.measure.noise import distinguishable
-from harness.measure.statistics import CONFIDENCE, Summary
+from harness.measure.resolution import Outcome
+from harness.measure.statistics import CONFIDENCE, FEWEST_FOR_INTERVAL, Summary
+from harness.report.point import MeasuredPoint
 from harness.report.quantity import exponent_text, quantity
-from harness.report.ranking import Growth, times_worse
+from harness.report.ranking import Growth, change_p_value, times_worse, told
 from harness.report.sentences.ratio import ratio_text
 from harness.report.series import Arrangement
-from harness.report.words import is_noisy, leaf_label, metric_title, metric_unit, more_is_better
+from harness.report.words import leaf_label, metric_title, metric_unit, more_is_better
 
 _MOST_EXPONENTS = 8
 _WIDEST = 2.0
+_DOUBTS = {
+    "apart": "",
+    "same": ", not to be told from no change",
+    "few": f", too few repeats to tell from no change (fewer than {FEWEST_FOR_INTERVAL})",
+}
 
 
 def exponent_sentences(arrangement: Arrangement, growths: Sequence[Growth]) -> list[Markup]:
@@ -73,7 +79,14 @@ def change_sentences(arrangement: Arrangement) -> list[Markup]:
             quantity(last.median(metric), metric_unit(metric)),
         )
         how = ratio_text(ratio)
-        apart = distinguishable(ratio, arrangement.floor(metric) if is_noisy(metric) else 0.0)
-        doubt = Markup("") if apart else Markup(", not to be told from no change")
+        doubt = _DOUBTS[_outcome(last, first, metric, arrangement)]
         found.append(text + Markup(": {}{}.").format(how, doubt))
     return found
+
+
+def _outcome(last: MeasuredPoint, first: MeasuredPoint, metric: str, arrangement: Arrangement) -> Outcome:
+    """Whether a change is told from none."""
+    outcome = told(last, first, metric, arrangement.resolution(metric))
+    if outcome != "uncontrolled":
+        return outcome
+    return "apart" if change_p_value(last, first, metric) <= arrangement.level else "same"

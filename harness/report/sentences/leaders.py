@@ -1,4 +1,4 @@
-"""Who is ahead, and by how much: at either end of x, in every panel."""
+"""Who is ahead, and by how much, or why that cannot be said: at either end of x, in every panel."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import quantity
-from harness.report.ranking import Ranked, rank
+from harness.report.ranking import Ranked, rank, unranked
 from harness.report.sentences.ratio import ratio_text
 from harness.report.series import Arrangement
 from harness.report.words import (
@@ -35,8 +35,9 @@ def leader_sentences(arrangement: Arrangement) -> list[Markup]:
         for panel in arrangement.panels:
             lines = [series for series in methods if series.panel == panel]
             for x in ends if methods is arrangement.series else (None,):
-                ranked = rank(lines, x, metric, arrangement.floor(metric))
-                if len(ranked) > 1:
+                ranked = rank(lines, x, metric, arrangement.resolution(metric))
+                # what is 0 for the best was not done at all, as where no wall is tested
+                if len(ranked) > 1 and all(entry.median != 0.0 for entry in ranked):
                     found.append(_lead(arrangement, ranked, panel, x, metric))
     return found
 
@@ -44,19 +45,24 @@ def leader_sentences(arrangement: Arrangement) -> list[Markup]:
 def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
     best, tied = ranked[0], [entry for entry in ranked if entry.tied]
     where = Markup("For {}: ").format(_scene(arrangement, best.point, panel, x))
+    why_not = unranked(entry.told for entry in ranked)
+    if why_not:
+        return where + _medians(ranked, metric) + Markup(": {}.").format(why_not)
     most = "highest" if more_is_better(metric) else "lowest"
     value = quantity(best.median, metric_unit(metric))
+    ahead = Markup("that is ")
     if len(tied) > 1:
         names = " and ".join(entry.series.label for entry in tied)
         rank_text = "about" if len(tied) == len(ranked) else f"the {most}, about"
         text = Markup("{}{} cannot be told apart in {}, {} <strong>{}</strong>").format(
             where, names, metric_title(metric), rank_text, value
         )
+        ahead = Markup("{} is ").format(best.series.label)
     else:
         text = Markup("{}<strong>{}</strong> has the {} {}, <strong>{}</strong>").format(
             where, best.series.label, most, metric_title(metric), value
         )
-    behind = [entry for entry in ranked if not entry.tied and entry.ratio is not None]
+    behind = [entry for entry in ranked if not entry.tied]
     if behind:
         chosen = dict.fromkeys((behind[0].series.label, behind[-1].series.label))
         named = [entry for entry in behind if entry.series.label in chosen]
@@ -65,8 +71,22 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
             for entry in named
             if entry.ratio is not None
         ]
-        text += Markup("; that is ") + Markup(", ").join(parts)
+        text += Markup("; ") + ahead + Markup(", ").join(parts)
     return text + Markup(".")
+
+
+def _medians(ranked: Sequence[Ranked], metric: str) -> Markup:
+    """The medians with their ranges, in the order of the series and not of a rank."""
+    parts = []
+    for entry in sorted(ranked, key=lambda entry: entry.series.style):
+        found = entry.point.summary(metric)
+        text = Markup("{} <strong>{}</strong>").format(entry.series.label, quantity(entry.median, metric_unit(metric)))
+        if found is not None and found.n > 1:
+            ends = (quantity(end, metric_unit(metric)) for end in (found.low, found.high))
+            text += Markup(" ({} to {})").format(*ends)
+        parts.append(text)
+    listed = Markup(", ").join(parts)
+    return Markup("{} is {}").format(metric_title(metric), listed)
 
 
 def _scene(arrangement: Arrangement, point: MeasuredPoint, panel: str, x: object) -> str:

@@ -1,19 +1,32 @@
-"""How two sweeps differ: which points got faster or slower, which counted or ended otherwise."""
+"""How two sweeps differ: which points got faster or slower, which counted or ended otherwise.
+
+A point is called slower where all of this holds:
+
+- five repeats or more are paired, each with the same repeat of the other sweep on the same machine;
+- what the machine has drifted between the two is taken out, repeat by repeat: the median ratio of all points;
+- the interval of the ratio then lies beyond the noise floor: of either sweep's controls, and 10 % in any case, for a
+  process can be that much slower than another of the same program by where its memory happens to lie;
+- its p-value, of Student's test that the ratio lies beyond that 10 %, counts among those of all points.
+
+Below five points nothing tells a drift of the machine from a change of the program: then a quarter is allowed for it.
+"""
 
 from __future__ import annotations
 
 import json
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
+
 from harness.errors import InputError
 from harness.measure.metrics import DERIVED, METRICS
-from harness.measure.noise import distinguishable, noise_floor
-from harness.measure.statistics import Summary, paired_ratio
+from harness.measure.noise import distinguishable, level, noise_floor, student
+from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary, summary
 from harness.store.records import RunRecord, SweepRecord
 from harness.store.snapshot import Snapshot, measuring_sweeps, snapshot
 from harness.store.tables import sweeps
@@ -21,6 +34,11 @@ from harness.store.tables import sweeps
 CLOCK = "run_seconds"
 # Relative. Times of the same work drift by so much from one hour to the next, which no control within a sweep can see.
 DRIFT = 0.1
+# The same, where there are too few points to see by how much the machine has drifted.
+UNKNOWN_DRIFT = 0.25
+FEWEST_FOR_DRIFT = 5  # points
+# No machine drifts by a larger factor: what all points have in common beyond that is a change of the program.
+MOST_DRIFT = 2.0
 # Another value is another answer. Errors near rounding are none of them, for a compiler may change those.
 EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)
 
@@ -37,8 +55,8 @@ class PointDifference:
     ----------
     label : what tells it from the others of its experiment
     before, after : medians of the clock, s; NaN where no run tells
-    ratio : after / before, paired by repeat
-    pace : whether the ratio lies beyond the noise floor; unknown below two pairs of repeats of one machine
+    ratio : after / before, paired by repeat, without the drift of the machine
+    pace : whether the ratio is told from 1; unknown below five pairs of repeats of one machine
     counters : {name: (before, after)} of the exact metrics that differ
     statuses : how its runs ended, before and after, where that differs
     """
@@ -76,6 +94,7 @@ class Difference:
     Parameters
     ----------
     floor : relative; no smaller difference in time is called one
+    drift : by which factor the machine as a whole got slower, taken out of all ratios; None where it cannot be seen
     points : measured by both, those that differ first
     verdicts : expectations and claims that are judged otherwise
     untouched : points that were not measured again
@@ -84,6 +103,7 @@ class Difference:
     before: SweepRecord
     after: SweepRecord
     floor: float
+    drift: float | None
     points: tuple[PointDifference, ...]
     verdicts: tuple[VerdictDifference, ...]
     untouched: int = 0
@@ -113,12 +133,12 @@ def difference(path: str | Path, before: int | None = None, after: int | None = 
         if number is not None and number not in known:
             raise InputError(f"{path}: there is no sweep {number}; there are {_listed(known)}")
     if before is not None and after is not None:
-        return _difference(known[before], known[after], snapshot(path, before), snapshot(path, after))
+        return difference_of(known[before], known[after], snapshot(path, before), snapshot(path, after))
     recent = measuring_sweeps(path)[-_RECENT:]
     for late in [after] if after is not None else reversed(recent):
         new = snapshot(path, late)
         for early in [before] if before is not None else _earlier(known, recent, late):
-            found = _difference(known[early], known[late], snapshot(path, early), new)
+            found = difference_of(known[early], known[late], snapshot(path, early), new)
             if found.points:
                 return found
     raise InputError(
@@ -133,17 +153,85 @@ def _earlier(known: Mapping[int, SweepRecord], recent: Sequence[int], late: int)
     return sorted(numbers, key=lambda number: known[number].finished is None)
 
 
-def _difference(early: SweepRecord, late: SweepRecord, old: Snapshot, new: Snapshot) -> Difference:
+def difference_of(early: SweepRecord, late: SweepRecord, old: Snapshot, new: Snapshot) -> Difference:
+    """How results differ that two sweeps left."""
     mine, theirs = _by_parameters(old.runs), _by_parameters(new.runs)
     shared = [key for key in theirs if key in mine]
     again = [key for key in shared if _identity(mine[key]) != _identity(theirs[key])]
-    floor = max(DRIFT, _floor(old), _floor(new))
+    ratios = {key: _ratios(mine[key], theirs[key]) for key in again}
+    drifts = _drifts(ratios.values())
+    floor = max(UNKNOWN_DRIFT if drifts is None else DRIFT, _floor(old), _floor(new))
+    steady = {key: _without(found, drifts or {}) for key, found in ratios.items()}
+    paces = _paces(steady, floor, math.log1p(UNKNOWN_DRIFT if drifts is None else DRIFT))
     labels = _labels({key: theirs[key] for key in again})
-    points = [_point(labels[key], mine[key], theirs[key], floor) for key in again]
+    points = [_point(labels[key], mine[key], theirs[key], summary(steady[key]), paces[key]) for key in again]
     points.sort(key=lambda point: (not point.changed, point.pace in ("same", "unknown"), -abs(_log(point.ratio))))
     counts = {pace: sum(point.pace == pace for point in points) for pace in ("slower", "faster", "same", "unknown")}
     counts["changed"] = sum(point.changed for point in points)
-    return Difference(early, late, floor, tuple(points), tuple(_verdicts(old, new)), len(shared) - len(again), counts)
+    return Difference(
+        early,
+        late,
+        floor,
+        float(np.median(list(drifts.values()))) if drifts else None,
+        tuple(points),
+        tuple(_verdicts(old, new)),
+        len(shared) - len(again),
+        counts,
+    )
+
+
+_Ratios = dict[tuple[int, str], float]
+"""after / before of one point, by repeat and machine."""
+
+
+def _ratios(old: Sequence[RunRecord], new: Sequence[RunRecord]) -> _Ratios:
+    before, after = _clocks(old), _clocks(new)
+    return {place: after[place] / before[place] for place in sorted(before.keys() & after.keys())}
+
+
+def _drifts(points: Iterable[_Ratios]) -> _Ratios | None:
+    """By which factor the machine got slower in every repeat; None where too few points tell.
+
+    A repeat that few points have is given the drift of the others.
+    """
+    seen: dict[tuple[int, str], list[float]] = defaultdict(list)
+    for found in points:
+        for place, ratio in found.items():
+            seen[place].append(ratio)
+    medians = {place: float(np.median(found)) for place, found in seen.items() if len(found) >= FEWEST_FOR_DRIFT}
+    if not medians:
+        return None
+    usual = float(np.median(list(medians.values())))
+    return {place: min(max(medians.get(place, usual), 1.0 / MOST_DRIFT), MOST_DRIFT) for place in seen}
+
+
+def _without(ratios: _Ratios, drifts: _Ratios) -> list[float]:
+    return [ratio / drifts.get(place, 1.0) for place, ratio in ratios.items()]
+
+
+def _paces(points: Mapping[str, Sequence[float]], floor: float, allowed: float) -> dict[str, Pace]:
+    """The pace of every point, all of them looked at together.
+
+    Parameters
+    ----------
+    points : ratios of each without the drift
+    floor : relative, of the interval
+    allowed : logarithm of the ratio from which on Student's test counts
+    """
+    p_values = {
+        key: student(np.log(ratios), allowed) for key, ratios in points.items() if len(ratios) >= FEWEST_FOR_INTERVAL
+    }
+    counting = level(list(p_values.values()))
+    paces: dict[str, Pace] = {}
+    for key, ratios in points.items():
+        found = summary(ratios)
+        if key not in p_values:
+            paces[key] = "unknown"
+        elif p_values[key] > counting or not distinguishable(found, floor):
+            paces[key] = "same"
+        else:
+            paces[key] = "slower" if found.median > 1.0 else "faster"
+    return paces
 
 
 def _by_parameters(runs: Sequence[RunRecord]) -> dict[str, list[RunRecord]]:
@@ -157,30 +245,21 @@ def _identity(runs: Sequence[RunRecord]) -> set[tuple[str, int, int]]:
     return {(run.point, run.repeat, run.sweep) for run in runs}
 
 
-def _point(label: str, old: Sequence[RunRecord], new: Sequence[RunRecord], floor: float) -> PointDifference:
-    before, after = _clocks(old), _clocks(new)
-    places = sorted(before.keys() & after.keys())
-    ratio = paired_ratio([after[place] for place in places], [before[place] for place in places])
+def _point(
+    label: str, old: Sequence[RunRecord], new: Sequence[RunRecord], ratio: Summary, pace: Pace
+) -> PointDifference:
     statuses = (_statuses(old), _statuses(new))
     return PointDifference(
         experiment=new[0].experiment or old[0].experiment,
         label=label,
         parameters=new[0].parameters,
-        before=_median(before.values()),
-        after=_median(after.values()),
+        before=_median(_clocks(old).values()),
+        after=_median(_clocks(new).values()),
         ratio=ratio,
-        pace=_pace(ratio, floor),
+        pace=pace,
         counters=_counters(old, new),
         statuses=statuses if statuses[0] != statuses[1] else None,
     )
-
-
-def _pace(ratio: Summary, floor: float) -> Pace:
-    if ratio.n < 2:
-        return "unknown"
-    if not distinguishable(ratio, floor):
-        return "same"
-    return "slower" if ratio.median > 1.0 else "faster"
 
 
 def _clocks(runs: Sequence[RunRecord]) -> dict[tuple[int, str], float]:
@@ -248,12 +327,9 @@ def _verdicts(old: Snapshot, new: Snapshot) -> list[VerdictDifference]:
     ]
 
 
-def _median(values: Any) -> float:
-    ordered = sorted(values)
-    if not ordered:
-        return math.nan
-    half = len(ordered) // 2
-    return float(ordered[half] if len(ordered) % 2 else (ordered[half - 1] + ordered[half]) / 2)
+def _median(values: Iterable[float]) -> float:
+    found = list(values)
+    return float(np.median(found)) if found else math.nan
 
 
 def _log(ratio: Summary) -> float:

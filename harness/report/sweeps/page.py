@@ -8,8 +8,9 @@ from pathlib import Path
 from markupsafe import Markup
 
 from harness.errors import InputError
+from harness.measure.statistics import FEWEST_FOR_INTERVAL
 from harness.report.quantity import Scale, number, plural, scale
-from harness.report.sweeps.difference import CLOCK, Difference, PointDifference, difference
+from harness.report.sweeps.difference import CLOCK, MOST_DRIFT, Difference, PointDifference, difference
 from harness.report.table import Column, Entry, Table, plain, words
 from harness.report.words import metric_title
 from harness.store.records import SweepRecord
@@ -32,8 +33,9 @@ def points_table(found: Difference) -> Table:
     rows = tuple(_row(point, unit) for point in found.points[:_MOST_ROWS])
     note = (
         f"{metric_title(CLOCK).capitalize()} in CPU {unit.symbol}, medians; the ratio after / before is paired repeat "
-        f"by repeat. It is called slower or faster where its whole interval lies more than {100 * found.floor:.0f} % "
-        "from 1: so far may times of the same work drift between two sweeps, or come apart in the controls of one."
+        f"by repeat{', without what all points have in common' if found.drift is not None else ''}. It is called "
+        f"slower or faster where, of {FEWEST_FOR_INTERVAL} pairs or more, its whole interval lies more than "
+        f"{100 * found.floor:.0f} % from 1, and all points looked at together let its p-value count."
     )
     if len(found.points) > _MOST_ROWS:
         note += f" The first {_MOST_ROWS} of {plural(len(found.points), 'point')}; `harness diff` has all."
@@ -55,6 +57,13 @@ def summary(found: Difference) -> list[Markup]:
             plural(counts["slower"], "point"), number(counts["faster"])
         )
     sentences = [paces + Markup(" by more than {:.0f} %, of {}.").format(100 * found.floor, _points(len(found.points)))]
+    if found.drift is not None:
+        sentences.append(
+            Markup(
+                "All of them together took <strong>{} times</strong> as long: up to a factor of {} that is taken for a "
+                "drift of the machine, and taken out of every ratio."
+            ).format(number(found.drift), number(MOST_DRIFT))
+        )
     if counts["unknown"]:
         sentences.append(Markup("{} without enough repeats to tell.").format(_points(counts["unknown"])))
     if counts["changed"]:
@@ -78,7 +87,8 @@ def facts(sweep: SweepRecord) -> list[tuple[str, str]]:
 def _row(point: PointDifference, unit: Scale) -> tuple[Entry, ...]:
     ratio = point.ratio
     known = ratio.n > 0 and math.isfinite(ratio.median)
-    interval = f"{number(ratio.low)} to {number(ratio.high)}" if known and ratio.n > 1 else "–"
+    kind = "" if ratio.coverage is not None else " (range)"
+    interval = f"{number(ratio.low)} to {number(ratio.high)}{kind}" if known and ratio.n > 1 else "–"
     differing = [f"{name} {number(before)} → {number(after)}" for name, (before, after) in point.counters.items()]
     if point.statuses is not None:
         differing.append(f"{point.statuses[0]} → {point.statuses[1]}")

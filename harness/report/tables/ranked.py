@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from harness.report.quantity import scale
-from harness.report.ranking import Ranked, rank
+from harness.report.ranking import Ranked, rank, unranked
 from harness.report.series import Arrangement
 from harness.report.table import Column, Table, measured, words
 from harness.report.tables.naming import heading, medians_text, panel_column, panel_entry
@@ -18,7 +18,9 @@ def ranked_tables(arrangement: Arrangement) -> list[Table]:
     if len(arrangement.methods) < 2:
         return []
     measured_ones = [
-        metric for metric in arrangement.metrics if any(point.summary(metric) for point in arrangement.points)
+        metric
+        for metric in arrangement.metrics
+        if any((point.values(metric) != 0.0).any() for point in arrangement.points)
     ]
     return [_table(arrangement, metric) for metric in measured_ones]
 
@@ -28,13 +30,16 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
     across = arrangement.x is not None and methods is arrangement.series
     xs = arrangement.x_values if across else (None,)
     unit = scale([point.median(metric) for point in arrangement.points], metric_unit(metric))
-    ranked, rows = is_ranked(metric), []
+    ranked, resolution, rows = is_ranked(metric), arrangement.resolution(metric), []
+    reasons: dict[str, None] = {}  # why columns are not ranked
     for panel in arrangement.panels:
         lines = [series for series in methods if series.panel == panel]
         ranks = [
-            {entry.series.label: entry for entry in rank(lines, x, metric, arrangement.floor(metric))} if ranked else {}
-            for x in xs
+            {entry.series.label: entry for entry in rank(lines, x, metric, resolution)} if ranked else {} for x in xs
         ]
+        why_not = [unranked(entry.told for entry in places.values()) for places in ranks]
+        reasons |= dict.fromkeys(filter(None, why_not))
+        ranks = [{} if reason else places for places, reason in zip(ranks, why_not, strict=True)]
         for series in lines:
             row = [words(series.label, series.style), *panel_entry(arrangement, series.points[0])]
             row += [
@@ -51,6 +56,8 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
     note = f"{metric}{units}, {medians_text(arrangement)}."
     if ranked:
         note += " Bold: best, or not to be told from it. Tint: times worse than the best."
+    if reasons:
+        note += f" Without either: {', or '.join(reasons)}."
     if any(point.is_wrong for point in arrangement.points):
         note += f" Struck through: {_why_struck(arrangement)}, and is not ranked."
     return Table(heading(metric), note, tuple(columns), tuple(rows))

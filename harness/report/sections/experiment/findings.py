@@ -18,13 +18,14 @@ def _html(page: ExperimentPage) -> Markup:
 
 def _noise_floor(arrangement: Arrangement) -> str:
     """What the control says, in a sentence; nothing where there is none."""
-    floors = {name: floor for name in arrangement.metrics if (floor := arrangement.floor(name))}
-    if not floors:
+    known = {name: arrangement.controls[name] for name in arrangement.metrics if name in arrangement.controls}
+    if not known:
         return ""
-    listed = ", ".join(f"±{number(100 * floor)} % in {metric_title(name)}" for name, floor in floors.items())
+    listed = ", ".join(f"±{number(100 * found.floor)} % in {metric_title(name)}" for name, found in known.items())
+    pairs = max(len(found.distances) for found in known.values())
     return (
         f"Noise floor: {listed}. So far apart were runs of the same point done twice (median of "
-        f"{plural(arrangement.controls, 'pair')}); no smaller difference is called one."
+        f"{plural(pairs, 'pair')}); no smaller difference is called one."
     )
 
 
