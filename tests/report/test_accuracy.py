@@ -109,9 +109,7 @@ def test_the_ratio_to_the_next_method_has_its_interval(tmp_path):
 
 
 def test_with_fewer_than_five_repeats_no_method_is_the_fastest_at_an_error(tmp_path):
-    few = Invented(
-        **{**vars(ACCURACY), "swept": {"algorithm": ["brute-force", "grid"], "dt": STEPS[:3]}, "repeats": 3}
-    )
+    few = Invented(**{**vars(ACCURACY), "swept": {"algorithm": ["brute-force", "grid"], "dt": STEPS[:3]}, "repeats": 3})
     html = dict(render(write(tmp_path / "x.db", [few])))["accuracy.html"]
     text = text_of(html).replace("\u00a0", " ")
     assert "the CPU time is brute-force (dt 1/60)" in text
