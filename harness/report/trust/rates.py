@@ -100,7 +100,16 @@ def simulated() -> list[Simulated]:
         (found, "a method 1.2 times as fast, five repeats, is named", more, 200, _winners([1, 1.2], 5)),
         (found, "a method 1.2 times as fast, ten repeats, is named", more, 200, _winners([1, 1.2], 10)),
         (found, "a method 2 times as fast, five repeats, is named", more, 200, _winners([1, 2], 5)),
-        (found, "a point 1.5 times as slow, five repeats, is called slower", more, 200, _sweeps(5, 1.5)),
+        *(
+            (
+                found,
+                f"the noisiest of twelve points, {slower} times as slow, {n} repeats, is called slower",
+                more,
+                200,
+                _sweeps(n, slower),
+            )
+            for slower, n in ((1.5, 5), (1.5, 10), (2.0, 5))
+        ),
     ]
     return [Simulated(*line) for line in lines]
 
