@@ -23,7 +23,7 @@ from harness.motion.hits import Outcome
 from harness.motion.law import MotionLaw
 
 LONG_ENOUGH = 0.01  # s of CPU time in the motion loop
-COLD_UNTIL = 0.1  # s of CPU time from which on what a first flight takes longer, about a millisecond, no longer counts
+COLD_UNTIL = 0.1  # s of CPU time from which on a first flight counts: little of it is what later ones take less
 SHORTEST = 64  # the first flight that warms flies that part of the scene
 MOST_WARMING = 16  # flights that warm, of which the last ten are whole
 MOST_ELAPSED = 0.02  # s that the flights after the first may take with all that is around their loops
