@@ -43,6 +43,7 @@ FACTS = (
     ("watertight", "watertight"),
     ("open_edges", "open edges"),
     ("convex", "convex"),
+    ("flat", "flat"),
     ("hull_vertices", "hull vertices"),
     ("diameter", "bounding diameter"),
     ("area", "area"),
@@ -174,12 +175,13 @@ def _facts(mesh: Mesh) -> dict[str, Any]:
         "watertight": mesh.watertight,
         "open_edges": about.boundary,
         "convex": mesh.convex,
+        "flat": mesh.flat,
         "hull_vertices": len(mesh.hull.vertices),
         "diameter": mesh.diameter,
         "area": float(area(mesh.vertices, mesh.faces).sum()) * mesh.diameter**2,
         "volume": None if enclosed is None else enclosed * mesh.diameter**3,
         "hull_volume": hull * mesh.diameter**3,
-        "hull_volume_ratio": None if enclosed is None else enclosed / hull,
+        "hull_volume_ratio": None if enclosed is None or mesh.flat else enclosed / hull,
         "notes": list(mesh.notes),
     }
 

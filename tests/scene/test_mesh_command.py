@@ -86,7 +86,7 @@ def test_weld_closes_a_mesh_whose_vertices_lie_within_rounding_and_says_how_many
 
 def test_weld_leaves_out_faces_that_lose_a_corner(capsys):
     cube = trimesh.creation.box()
-    Path("cube.obj").write_text(cube.export(file_type="obj") + "\nv 0.5 0.5 0.4999\nf 7 8 9\n")
+    Path("cube.obj").write_text(cube.export(file_type="obj") + "\nv 0.5 0.4999 0.4999\nf 7 8 9\n")
     assert main(["mesh", "weld", "cube.obj", "--within", "1e-3", "--out", "cube.ply"]) == 0
     assert "1 face with two corners so welded left out" in capsys.readouterr().out
     assert len(read_mesh("cube.ply").faces) == 12
