@@ -111,9 +111,7 @@ def test_what_a_backend_writes_into_any_file_it_holds_harms_no_other_run(spheres
         ("1 / 0\n", "failed", "ZeroDivisionError"),
     ],
 )
-def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(
-    spheres, plugin, head, status, reason, monkeypatch
-):
+def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(spheres, plugin, head, status, reason, monkeypatch):
     monkeypatch.setattr("harness.runner.servers._IMPORT", 2.0)
     plugin("broken", head=head)
     experiment = spheres(backend="broken", algorithm="native", timeout=1 if status == "timeout" else 20)
