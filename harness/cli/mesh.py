@@ -15,7 +15,8 @@ what is read of a file, told by the end of its name:
   .off  OFF, COFF, NOFF, STOFF as text, comments; colours and normals passed over
   .glb  glTF 2.0: triangles and strips of the scene, placed by its nodes
 Polygons of any number of corners are cut into triangles by ear clipping in their
-own plane; faces without area are left out and counted. Text may be in any encoding
+own plane; faces without area are left out and counted. A mesh in one plane is
+read, and has shape mesh alone. Text may be in any encoding
 that holds ASCII. Not read: triangle strips of PLY, binary OFF, compressed, sparse
 or normalised glTF, free-form surfaces, UTF-16.
 """

@@ -24,8 +24,11 @@ import yaml
 from harness.errors import InputError
 from harness.experiment.load import load_text
 from harness.measure.verdicts import judge
-from harness.runner.servers import Servers
+from harness.runner.execute import plan_of
+from harness.runner.scene_of_point import build_scene
+from harness.runner.servers import Servers, mesh_of
 from harness.runner.sweep import run
+from harness.scene.mesh import Mesh
 from tests.runner.extreme_numbers import NUMBERS, meshes, outcome
 
 # Of another sort than `NUMBERS`: wrong signs, beyond what is legal or what a float holds, and what is no number.
@@ -116,6 +119,14 @@ def changed(document: dict[str, Any], path: tuple[str | int, ...], value: object
     return copy
 
 
+def planned_here(document: dict[str, Any], opened: dict[Path, Mesh]) -> None:
+    """Import and compile what a plan needs in this process, so that the processes forked from it need not."""
+    loaded = load_text(json.dumps(document), Path("extreme.yaml"))
+    named = dict.fromkeys(loaded.mesh_paths.values(), next(iter(opened.values())))
+    for point in loaded.points[:1]:
+        plan_of(point, build_scene(point, mesh_of(loaded, point, named)))
+
+
 def verdict(experiment: dict[str, Any], table: pd.DataFrame) -> tuple[str, str | None]:
     """What becomes of the criteria of an experiment, and what is wrong with that."""
     try:
@@ -137,6 +148,7 @@ def tried(wanted: list[str], servers: Servers) -> Iterator[tuple[str, str, str |
     opened = meshes()
     for name, document in yaml.safe_load(EXPERIMENTS).items():
         table = None
+        planned_here(document, opened)
         for path in numbers_of(document):
             leaf = f"{name}: {'.'.join(map(str, path))}"
             if wanted and not any(word in leaf for word in wanted):

@@ -116,7 +116,7 @@ SLOWLY = f"""        self.calls += 1
 
 def once(target: str, name: str, tries: int, seed: int = 259) -> int:
     """So many tries of one signal at one target; the failures."""
-    failures, done = 0, 0
+    failures, done, shown = 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
         ends = target == "sweep" and name in ENDS
         hit = Hit(Path(folder), repeats=5 * tries if ends else 2 * tries, seed=seed)
@@ -135,6 +135,9 @@ def once(target: str, name: str, tries: int, seed: int = 259) -> int:
                 print(f"{name} at the {target}, try {done}: {error}", flush=True)
                 for process in hit.processes():
                     process.kill()
+            if done < tries and done // 10 > shown // 10:  # so that something is known if this is broken off
+                print(f"{name} at the {target}: {done} tries so far, {failures} failures", flush=True)
+                shown = done
     print(f"{name} at the {target}: {done} tries, {failures} failures", flush=True)
     return failures
 
