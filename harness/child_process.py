@@ -33,6 +33,9 @@ _CHUNK = 2**20
 MOST_BYTES = 2**31
 """Of what a child sends and this process has not taken; no message is longer."""
 
+LONGEST_WAIT = 1e6
+"""s that the system can be asked to wait at once; whoever waits longer asks again."""
+
 NoMessage = Literal["ended", "timeout", "stopped"]
 """Why there is no message: the child has ended, it did not answer in time, or the one who waits was told to stop."""
 
@@ -225,7 +228,8 @@ class Child:
             message = self._message()
             if message is not None:
                 return message
-            ready = wait(waiting, timeout=max(0.0, deadline - time.monotonic()))
+            left = max(0.0, deadline - time.monotonic())
+            ready = wait(waiting, timeout=min(left, LONGEST_WAIT))
             if stop in ready:
                 return "stopped"
             if self._descriptor in ready:
@@ -233,6 +237,8 @@ class Child:
                     pass
                 message = self._message()
                 return "ended" if message is None else message
+            if not ready and left > LONGEST_WAIT:
+                continue
             if not ready:
                 return "timeout"
             if not self._take():

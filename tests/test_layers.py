@@ -20,6 +20,7 @@ BASE = {
     "process_limits",
     "python_child",
     "vocabulary",
+    "whole_file",
 }
 KERNELS = {"scene", "narrowphase", "broadphase"}
 FLIGHT = KERNELS | {"backends", "measure", "motion", "methods"}

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from harness.arrays import Floats, Pairs
+from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
 from harness.scene.scene import Scene
@@ -77,6 +78,8 @@ class MuJoCo:
             radius = size / self._unit / 2
             body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], mass=1.0)
             return
+        if scene.mesh.flat:
+            raise InputError("it replaces each mesh by its hull, and a flat mesh has none")
         if size not in self._of_size:
             vertices = scene.mesh.hull.vertices * (size / self._unit)
             spec.add_mesh(

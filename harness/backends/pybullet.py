@@ -11,6 +11,7 @@ import numpy as np
 import pybullet
 
 from harness.arrays import Floats, Pairs
+from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
 from harness.scene.scene import Scene
@@ -90,6 +91,8 @@ class PyBullet:
             return int(
                 pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=size / 2, physicsClientId=self._client)
             )
+        if scene.mesh.flat:
+            raise InputError("it replaces each mesh by its hull, and a flat mesh has none")
         # vertices without indices make a convex hull; with indices they would make a concave mesh
         vertices = (scene.mesh.hull.vertices * size).tolist()
         return int(pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=vertices, physicsClientId=self._client))

@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         The database cannot be read, or the file cannot be written.
     """
     from harness.store import tables
+    from harness.whole_file import write_whole
 
     runs = tables.run_records(arguments.db)
     if arguments.format == "csv":
@@ -55,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(text)
         return 0
     try:
-        arguments.out.write_text(text, encoding="utf-8", newline="")
+        write_whole(arguments.out, text)
     except OSError as error:
         raise InputError(f"{arguments.out}: cannot be written: {error.strerror}") from error
     return 0

@@ -27,6 +27,8 @@ COMMANDS = {
 }
 
 
+# What the system says of a library that it has no memory for.
+_OUT_OF_MEMORY = ("failed to map segment", "annot allocate memory")
 _CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
 
 
@@ -77,6 +79,11 @@ def _run(words: Sequence[str]) -> int:
     except KeyboardInterrupt as interruption:
         print("interrupted", file=sys.stderr)
         return exit_code(interruption)
+    except (MemoryError, ImportError) as error:
+        if isinstance(error, ImportError) and not any(words in str(error) for words in _OUT_OF_MEMORY):
+            raise
+        print("memory ran out: this process may take less than the command needs (`ulimit -v`)", file=sys.stderr)
+        return 1
 
 
 def _one_line(text: str) -> str:

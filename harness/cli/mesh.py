@@ -15,7 +15,8 @@ what is read of a file, told by the end of its name:
   .off  OFF, COFF, NOFF, STOFF as text, comments; colours and normals passed over
   .glb  glTF 2.0: triangles and strips of the scene, placed by its nodes
 Polygons of any number of corners are cut into triangles by ear clipping in their
-own plane; faces without area are left out and counted. Text may be in any encoding
+own plane; faces without area are left out and counted. A mesh in one plane is
+read, and has shape mesh alone. Text may be in any encoding
 that holds ASCII. Not read: triangle strips of PLY, binary OFF, compressed, sparse
 or normalised glTF, free-form surfaces, UTF-16.
 """
@@ -43,6 +44,7 @@ FACTS = (
     ("watertight", "watertight"),
     ("open_edges", "open edges"),
     ("convex", "convex"),
+    ("flat", "flat"),
     ("hull_vertices", "hull vertices"),
     ("diameter", "bounding diameter"),
     ("area", "area"),
@@ -174,12 +176,13 @@ def _facts(mesh: Mesh) -> dict[str, Any]:
         "watertight": mesh.watertight,
         "open_edges": about.boundary,
         "convex": mesh.convex,
+        "flat": mesh.flat,
         "hull_vertices": len(mesh.hull.vertices),
         "diameter": mesh.diameter,
         "area": float(area(mesh.vertices, mesh.faces).sum()) * mesh.diameter**2,
         "volume": None if enclosed is None else enclosed * mesh.diameter**3,
         "hull_volume": hull * mesh.diameter**3,
-        "hull_volume_ratio": None if enclosed is None else enclosed / hull,
+        "hull_volume_ratio": None if enclosed is None or mesh.flat else enclosed / hull,
         "notes": list(mesh.notes),
     }
 

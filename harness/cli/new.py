@@ -21,6 +21,7 @@ def run(arguments: argparse.Namespace) -> int:
     from pathlib import Path
 
     from harness.errors import InputError, Problem
+    from harness.whole_file import write_whole
 
     name: str = arguments.name
     path = Path(name) if name.endswith(".yaml") else Path(FOLDER) / f"{name}.yaml"
@@ -28,13 +29,11 @@ def run(arguments: argparse.Namespace) -> int:
     if beside or not name.isprintable() or not name.strip("/."):
         raise InputError(f'"{name}" is no name for a file in {FOLDER}/; a path must end in .yaml')
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("x", encoding="utf-8") as file:
-            file.write(_text(path))
+        write_whole(path, _text(path), replace=False)
     except FileExistsError:
         raise InputError([Problem("this exists already, and is left as it is", str(path))]) from None
-    except (OSError, ValueError) as error:
-        raise InputError([Problem(f"this cannot be written: {error}", str(path))]) from None
+    except OSError as error:
+        raise InputError([Problem(f"this cannot be written: {error.strerror}", str(path))]) from None
     print(f"wrote {path}")
     print(f"check it with `harness validate {path}`, run it with `harness sweep {path}`, then `harness report`")
     return 0

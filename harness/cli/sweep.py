@@ -255,6 +255,8 @@ def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
     for experiment, statement in summary.broken:
         print(f"{experiment}: expectation fails: {statement}")
     option = "" if arguments.db == DATABASE else f" --db {shlex.quote(arguments.db)}"
+    if arguments.db.startswith("-"):  # else it would be taken for an option
+        option = option.replace("--db ", "--db=", 1)
     print(f"Now `harness report{option}` turns {arguments.db} into pages.")
 
 

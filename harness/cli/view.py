@@ -35,6 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.replay.page import replay_page
     from harness.runner.preparation import prepare
     from harness.runner.servers import Servers, task_of
+    from harness.whole_file import write_whole
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))
     experiment = experiments[0]
@@ -52,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     page = replay_page(report.recording, experiment.title, _facts(experiment, report.metrics))
     with _writing(path):
-        path.write_text(page, encoding="utf-8", newline="\n")
+        write_whole(path, page)
     print(path)
     if not arguments.out:
         _open(path.absolute().as_uri())

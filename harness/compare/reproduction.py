@@ -8,6 +8,7 @@ from pathlib import Path
 
 from harness.compare.outcome import Case
 from harness.vocabulary import MethodName
+from harness.whole_file import write_whole
 
 
 def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
@@ -29,7 +30,7 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
     if mesh is not None and not (folder / mesh.name).exists():
         shutil.copyfile(mesh, folder / mesh.name)
     path = folder / f"{name}.yaml"
-    path.write_text(text_of(case, mesh.name if mesh else None), encoding="utf-8")
+    write_whole(path, text_of(case, mesh.name if mesh else None))
     return path
 
 

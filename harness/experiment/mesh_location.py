@@ -15,7 +15,7 @@ from harness.errors import InputError
 from harness.experiment.messages import near, shown
 
 PACKAGE = "package:"
-SUFFIXES = (".ply", ".obj", ".stl", ".off", ".glb", ".gltf", ".dae", ".3mf")
+SUFFIXES = (".ply", ".obj", ".stl", ".off", ".glb")  # of what is read, which alone is suggested
 _MOST_LISTED = 1000
 
 

@@ -22,6 +22,7 @@ from harness.report.results import Results
 from harness.report.section import sections_of
 from harness.report.summary import summary
 from harness.store.records import ExperimentRecord
+from harness.whole_file import write_whole
 
 
 def write_report(database: str | Path, out: str | Path) -> Path:
@@ -43,9 +44,7 @@ def write_report(database: str | Path, out: str | Path) -> Path:
     contents = list(render(database))  # all of it or, where something is wrong, nothing
     try:
         for name, text in contents:
-            path = out / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
+            write_whole(out / name, text)
     except OSError as error:
         raise InputError(
             f"{error.filename or out}: cannot be written: {error.strerror}; give another folder with --out"

@@ -6,12 +6,14 @@ runs of a worker that dies are done by another. Needs the extra `cluster`.
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import signal
 import socket
 import threading
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime, timezone
@@ -89,7 +91,25 @@ class Cluster:
     def run(
         self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
     ) -> Iterator[FinishedJob]:
-        """See `harness.runner.executor.Executor`; `before` is called when a job is handed out."""
+        """See `harness.runner.executor.Executor`; `before` is called when a job is handed out.
+
+        Raises
+        ------
+        InputError
+            The scheduler is lost, a worker cannot do these runs, or there has been none for too long.
+        """
+        try:
+            yield from self._run(jobs, meshes, before)
+        except (OSError, asyncio.CancelledError, CancelledError) as error:  # as Dask says that a connection is gone
+            self._sent.clear()  # nobody is there to end them, or to say what became of them
+            raise InputError(
+                f"{self._option}: the connection to the scheduler was lost; every finished run is kept, and the same "
+                "command does the rest"
+            ) from error
+
+    def _run(
+        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
+    ) -> Iterator[FinishedJob]:
         waiting = deque(jobs)
         contents: dict[str, Future] = {}
         while waiting or self._sent:

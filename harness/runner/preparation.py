@@ -15,7 +15,7 @@ from harness.experiment.load import find_experiments, load
 from harness.experiment.messages import listed, near, shown
 from harness.measure.metrics import METRICS
 from harness.methods.stages import StageError
-from harness.scene.mesh import Mesh
+from harness.scene.mesh import NO_HULL, Mesh
 from harness.scene.mesh_child import open_meshes
 
 
@@ -61,7 +61,7 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     meshes, broken = _open_meshes(loaded)
     valid = []
     for experiment in loaded:
-        found = [*_names(experiment), *_mesh_problems(experiment, broken), *_namesakes(experiment, loaded)]
+        found = [*_names(experiment), *_mesh_problems(experiment, meshes, broken), *_namesakes(experiment, loaded)]
         found = found or list(_forced(experiment, meshes))
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
@@ -78,10 +78,15 @@ def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], d
     return meshes, {path: message for path, message in opened.items() if isinstance(message, str)}
 
 
-def _mesh_problems(experiment: Experiment, broken: Mapping[Path, str]) -> Iterator[Problem]:
+def _mesh_problems(
+    experiment: Experiment, meshes: Mapping[Path, Mesh], broken: Mapping[Path, str]
+) -> Iterator[Problem]:
+    hulls = {point.scene.mesh for point in experiment.points if point.scene.shape == "hull"}
     for reference, path in experiment.mesh_paths.items():
         if path in broken:
             yield experiment.leaf_problem("mesh", reference, broken[path])
+        elif meshes[path].flat and reference in hulls:
+            yield experiment.leaf_problem("mesh", reference, f"{path.name}: {NO_HULL}")
 
 
 def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Iterator[Problem]:

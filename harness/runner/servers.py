@@ -21,7 +21,7 @@ from typing import Any
 
 import psutil
 
-from harness.child_process import Ending
+from harness.child_process import LONGEST_WAIT, Ending
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
@@ -37,6 +37,7 @@ _ONE_THREAD = dict.fromkeys(
 # s that a server may take, on a machine with other things to do: to start, to import and compile what a run calls,
 # beyond the time of a run to end it, and within a message. Longer, and it has been stopped, or hangs.
 _START, _WARM_UP, _BEYOND, _MESSAGE = 300.0, 900.0, 60.0, 60
+_IMPORT = 60.0  # s that importing a backend may take, where its runs may take less: that is no part of any of them
 _LAST = 10.0  # s for the end of what is killed
 _TRIES = 2
 # In the environment of a server, and so of all that it starts: by it that is found, wherever it has gone to.
@@ -172,15 +173,15 @@ class _Server:
 
         Parameters
         ----------
-        timeout : s that importing the backend may take
+        timeout : s that importing the backend may take, if it is more than it may in any case
         """
         importing = f'importing backend "{self._backend}"'
         try:
             self._receive(_START)
             try:
-                self._receive(timeout)
+                self._receive(max(timeout, _IMPORT))
             except TimeoutError:
-                return Report("timeout", f"{importing} did not end within {timeout:g} s")
+                return Report("timeout", f"{importing} did not end within {max(timeout, _IMPORT):g} s")
         except (EOFError, OSError):
             return Report("crashed", f"{importing} {self._end()}")
         self._ready = True
@@ -223,8 +224,10 @@ class _Server:
         EOFError, OSError
             If the server has died.
         """
-        if not self._channel.poll(within):
-            raise TimeoutError
+        deadline = monotonic() + within
+        while not self._channel.poll(max(0.0, min(deadline - monotonic(), LONGEST_WAIT))):
+            if monotonic() >= deadline:
+                raise TimeoutError
         return self._channel.recv()
 
     def _end(self) -> str:

@@ -68,6 +68,36 @@ def convex_hull(points: NDArray[np.float64]) -> Hull:
     return hull_of(points[used], renumbered.reshape(-1, 3).astype(np.int32))
 
 
+def flat_hull(points: NDArray[np.float64]) -> Hull:
+    """The convex hull of points in one plane: a polygon with two sides, closed, of no volume.
+
+    Parameters
+    ----------
+    points : (n, 3) float array, not all on a line; how far they are from their plane is passed over
+
+    Returns
+    -------
+    Hull
+        Its vertices are among the points, in their order; half of its faces are turned either way.
+
+    Examples
+    --------
+    >>> hull = flat_hull(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0]]))
+    >>> len(hull.vertices), len(hull.faces)
+    (4, 4)
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    try:
+        ring = ConvexHull((points - points.mean(axis=0)) @ axes[:2].T).vertices
+    except (QhullError, ValueError) as error:
+        raise InputError("the mesh has no extent in two directions: it is a line") from error
+    used, ring = np.unique(ring, return_inverse=True)
+    fan = np.stack([np.full(len(ring) - 2, ring[0]), ring[1:-1], ring[2:]], axis=1)
+    return hull_of(points[used], np.concatenate([fan, fan[:, ::-1]]).astype(np.int32))
+
+
 def hull_of(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Hull:
     """The hull with these arrays, which are copied and made read-only."""
     vertices, faces = np.array(vertices, np.float64, order="C"), np.array(faces, np.int32, order="C")

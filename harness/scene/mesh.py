@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from harness.scene.hull import Hull
 
+NO_HULL = "the mesh is flat, so that no hull encloses it; give it shape mesh"
 Triangles: TypeAlias = NDArray[np.int32]
 """(f, 3), numbers of vertices."""
 
@@ -39,6 +40,7 @@ class Mesh:
     convex : the surface is its own hull, so that the hull may stand for it
     notes : what a person should know, such as "open: 3 boundary edges"
     diameter : of the minimal bounding sphere before it was normalised, in the file's unit
+    flat : all of it lies in one plane, so that it encloses nothing; its hull is a polygon with two sides
     """
 
     name: str
@@ -50,6 +52,7 @@ class Mesh:
     convex: bool
     notes: tuple[str, ...] = ()
     diameter: float = 1.0
+    flat: bool = False
 
 
 def digest(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:

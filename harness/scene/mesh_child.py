@@ -134,6 +134,7 @@ def _received(said: Mapping[str, Any]) -> Mesh | str:
         convex=said["convex"],
         notes=tuple(said["notes"]),
         diameter=said["diameter"],
+        flat=said["flat"],
     )
 
 
@@ -153,6 +154,9 @@ def _serve(answers: Channel, folder: Path, memory: int, timeout: float, paths: S
             answer = {"error": str(error)}
         except MemoryError:
             answer = {"error": f"{path.name}: reading it takes more than {memory / GIB:.3g} GiB of memory"}
+        except OSError as error:
+            why = f"what was read of it cannot be put into {folder}: {error.strerror}"
+            answer = {"error": f"{path.name}: {why}. Make room there, or name another folder by TMPDIR"}
         answers.send(json.dumps(answer).encode())
 
 
@@ -173,6 +177,7 @@ def _sent(mesh: Mesh, file: Path) -> dict[str, object]:
         "convex": mesh.convex,
         "notes": mesh.notes,
         "diameter": mesh.diameter,
+        "flat": mesh.flat,
     }
 
 

@@ -1,4 +1,4 @@
-"""Reads a mesh file, refuses what is no three-dimensional surface, and normalises the rest.
+"""Reads a mesh file, refuses what is no surface, and normalises the rest.
 
 The file is taken as bytes, so that it cannot name other files, and read by its format's reader in `formats`.
 A mesh from a stranger is better read through `mesh_child`, which limits memory and time.
@@ -16,7 +16,7 @@ from harness.errors import InputError
 from harness.scene.bounding_sphere import bounding_sphere
 from harness.scene.formats import FORMATS
 from harness.scene.formats.contents import recognised
-from harness.scene.hull import convex_hull
+from harness.scene.hull import convex_hull, flat_hull
 from harness.scene.mesh import Mesh, digest
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, of_triangles, scaled
 from harness.scene.topology import Topology, is_convex, proper, topology
@@ -28,6 +28,7 @@ FLAT = 1e-9
 EXTENTS = (1e-100, 1e100)
 # A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of a coordinate.
 THIN = 2.0**-50
+FLAT_NOTE = "flat: it encloses nothing, so that it has shape mesh alone, and no hull"
 NO_AREA = "all faces of the mesh are degenerate: it has no area"
 
 
@@ -47,7 +48,7 @@ def read_mesh(path: Path | str) -> Mesh:
     Raises
     ------
     InputError
-        If it cannot be read, is too large, or is no surface with an extent in three dimensions; the file's name first.
+        If it cannot be read, is too large, or is no surface; the file's name first.
     MemoryError
         If memory ran out while reading it.
     """
@@ -72,7 +73,7 @@ def make_mesh(name: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]
     Raises
     ------
     InputError
-        If they are no surface with an extent in three dimensions.
+        If they are no surface.
     """
     vertices, faces = np.asarray(vertices), np.asarray(faces)
     if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
@@ -112,10 +113,11 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
     faces, used = _compact(cut.faces[~thin])
     vertices = polygons.vertices[used]
     vertices, extent = _unit_box(vertices)
-    hull = convex_hull(vertices)
-    centre, radius = bounding_sphere(hull.vertices)
+    flat = _is_flat(vertices)
+    hull_around = flat_hull if flat else convex_hull
+    centre, radius = bounding_sphere(vertices if flat else hull_around(vertices).vertices)
     vertices = np.ascontiguousarray((vertices - centre) / (2 * radius))
-    hull = convex_hull(vertices)
+    hull = hull_around(vertices)
     closed, about = faces, topology(faces, len(vertices))
     if thin.any() and not about.watertight:
         # A face without area often stands where an edge meets two others: that is no gap, though no edge is shared.
@@ -132,9 +134,10 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
         hull=hull,
         digest=digest(vertices, faces),
         watertight=about.watertight,
-        convex=is_convex(vertices, closed, hull),
-        notes=(*_notes(about, cut, int(thin.sum())), *polygons.notes, *notes),
+        convex=not flat and is_convex(vertices, closed, hull),
+        notes=(*((FLAT_NOTE,) if flat else ()), *_notes(about, cut, int(thin.sum())), *polygons.notes, *notes),
         diameter=2 * radius * extent,
+        flat=flat,
     )
 
 
@@ -197,17 +200,19 @@ def _compact(faces: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.in
 
 
 def _unit_box(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-    """The vertices moved to the origin and scaled to a largest extent of 1, and that extent; refused if flat."""
+    """The vertices moved to the origin and scaled to a largest extent of 1, and that extent."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     with np.errstate(over="ignore"):
         extent = float((high - low).max())
     if not EXTENTS[0] <= extent <= EXTENTS[1]:
         raise InputError(f"the mesh's extent is {extent:g}; it must be between {EXTENTS[0]:g} and {EXTENTS[1]:g}")
-    vertices = (vertices - (low + (high - low) / 2)) / extent
+    return (vertices - (low + (high - low) / 2)) / extent, extent
+
+
+def _is_flat(vertices: NDArray[np.float64]) -> bool:
+    """Whether vertices lie in one plane, up to what a hull around them could be made of."""
     spread = np.linalg.svd(np.cov(vertices.T, bias=True), compute_uv=False)
-    if len(vertices) < 4 or np.sqrt(spread[2] / spread[0]) < FLAT * 10:
-        raise InputError("the mesh is flat: it has no extent in one direction, so no hull encloses it")
-    return vertices, extent
+    return len(vertices) < 4 or bool(np.sqrt(spread[2] / spread[0]) < FLAT * 10)
 
 
 def _notes(about: Topology, cut: Triangles, thin: int) -> tuple[str, ...]:

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.whole_file import write_whole
+
 HEADER = """ply
 format binary_little_endian 1.0
 element vertex {vertices}
@@ -39,8 +41,5 @@ def write_ply(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32
     rows = np.empty(len(faces), [("corners", "u1"), ("vertices", "<i4", 3)])
     rows["corners"] = 3
     rows["vertices"] = faces
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("wb" if replace else "xb") as file:
-        file.write(HEADER.format(vertices=len(vertices), faces=len(faces)).encode())
-        file.write(np.ascontiguousarray(vertices, "<f8").tobytes())
-        file.write(rows.tobytes())
+    header = HEADER.format(vertices=len(vertices), faces=len(faces)).encode()
+    write_whole(path, header + np.ascontiguousarray(vertices, "<f8").tobytes() + rows.tobytes(), replace=replace)

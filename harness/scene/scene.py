@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.errors import InputError
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import Hull
-from harness.scene.mesh import Mesh, Surface
+from harness.scene.mesh import NO_HULL, Mesh, Surface
 from harness.vocabulary import Shape
 
 
@@ -38,6 +39,8 @@ class Scene:
     def __post_init__(self) -> None:
         if self.mesh is None and self.shape != "sphere":
             raise ValueError(f"shape {self.shape} needs a mesh")
+        if self.mesh is not None and self.mesh.flat and self.shape == "hull":
+            raise InputError(f"{self.mesh.name}: {NO_HULL}")
 
     def solid_of(self, size: float) -> Surface:
         """What stands for a body of this size (m) in the narrow phase, in m, in its own frame: its hull or its mesh.

@@ -341,8 +341,7 @@ def _show_leaves(connection: sqlite3.Connection) -> None:
 
 
 def _row_id(cursor: sqlite3.Cursor) -> int:
-    assert cursor.lastrowid is not None
-    return cursor.lastrowid
+    return int(cursor.lastrowid or 0)  # None only where nothing was inserted
 
 
 def _json(value: Any) -> str:

@@ -50,8 +50,13 @@ class SweepLock:
                     "with --db; nothing was changed"
                 ) from error
             if self._is_still_there(handle):
-                os.ftruncate(handle, 0)
-                os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
+                try:
+                    os.ftruncate(handle, 0)
+                    os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
+                except BaseException:  # the disk is full
+                    self._path.unlink()
+                    os.close(handle)
+                    raise
                 return handle
             os.close(handle)  # its holder removed it after it was opened here, and before it was locked
 

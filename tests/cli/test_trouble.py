@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import sqlite3
 import subprocess
 import sys
@@ -66,6 +67,88 @@ def test_a_full_disk_keeps_every_finished_run_and_the_next_sweep_does_the_rest(t
     assert 0 < kept < 400
     assert main(["sweep", "trouble.yaml", "--db", str(trouble), "--set", f"repeats={kept + 1}"]) == 0
     assert f"1 runs done (1 ok), {kept} kept" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["a b.db", "it's \"q\".db", "h#sh.db", "wh?t.db", "per%41cent%.db", "new\nline.db", "tab\t.db", "-dash.db",
+     "back\\.db", "$HOME;&.db", "ünï ⇒.db", "file:x.db", "sub folder#/x?.db", " .db"],
+)  # fmt: skip
+def test_a_results_file_may_be_called_anything(trouble, capsys, name):
+    """The file that is named is made, and read again, by the words that the sweep itself gives to go on."""
+    path = trouble.parent / name
+    assert main(["sweep", "trouble.yaml", f"--db={name}", "--set", "repeats=1"]) == 0
+    said = capsys.readouterr().out
+    assert path.is_file()
+    assert {each.name for each in path.parent.iterdir()} <= {
+        path.name,
+        f"{path.name}-wal",
+        f"{path.name}-shm",
+        "trouble.yaml",
+    }
+    words = shlex.split(said.partition("Now `harness ")[2].rpartition("` turns")[0])
+    assert words[0] == "report"
+    assert main(["export", *words[1:], "--format", "json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["runs"]) == 1
+    assert main(["sweep", "trouble.yaml", f"--db={name}", "--set", "repeats=1"]) == 0
+    assert "0 runs done, 1 kept from before" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("becomes", ["nothing", "another", "shorter"])
+def test_a_file_that_goes_while_a_sweep_writes_is_said(trouble, capsys, monkeypatch, becomes):
+    swept(trouble)
+    added = Database.add_run
+
+    def add_run(database, *arguments, **options):
+        added(database, *arguments, **options)
+        if becomes == "nothing":
+            trouble.unlink()
+        elif becomes == "another":
+            trouble.rename(f"{trouble}.away")
+            trouble.write_bytes(b"")
+        else:
+            os.truncate(trouble, 5000)
+
+    monkeypatch.setattr(Database, "add_run", add_run)
+    assert main(["sweep", "trouble.yaml", "--db", str(trouble), "--quiet", "--fresh"]) == 2
+    said = capsys.readouterr().err
+    assert ("was removed or replaced while it was written to" if becomes != "shorter" else "is damaged") in said
+
+
+@pytest.mark.slow
+def test_two_sweeps_and_a_report_at_once_on_one_file(trouble, capsys):
+    """One of the sweeps does its runs, the other is refused; reports and exports show what is finished."""
+    command = [sys.executable, "-m", "harness", "sweep", "trouble.yaml", "--db", "results.db", "--set", "repeats=20"]
+    swept(trouble)
+    sweeps = [
+        subprocess.Popen([*command, "--fresh"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    while all(sweep.poll() is None for sweep in sweeps):
+        assert main(["export", "--db", "results.db"]) == 0
+    assert main(["report", "--db", "results.db", "--out", "pages"]) == 0
+    ended = sorted((sweep.wait(), *sweep.communicate()) for sweep in sweeps)
+    assert [code for code, *_ in ended] == [0, 2]
+    assert "20 runs done (20 ok)" in ended[0][1]
+    assert "another sweep is writing to it (process " in ended[1][2]
+    assert len(tables.runs(trouble)) == 20
+    with sqlite3.connect(trouble) as raw:
+        assert raw.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+@pytest.mark.slow
+def test_two_reports_of_one_file_are_the_same_byte_for_byte(trouble):
+    """Made by processes whose sets are in another order, in other folders, of other names, at other times."""
+    swept(trouble)
+    pages = []
+    for seed, folder in (("0", "one"), ("4321", "two/deep er")):
+        command = [sys.executable, "-m", "harness", "report", "--db", str(trouble), "--out", folder]
+        environment = os.environ | {"PYTHONHASHSEED": seed, "TZ": f"UTC-{seed[:1]}"}
+        subprocess.run(command, env=environment, check=True, capture_output=True)
+        files = [path for path in (trouble.parent / folder).rglob("*") if path.is_file()]
+        pages.append({str(path.relative_to(trouble.parent / folder)): path.read_bytes() for path in files})
+    assert pages[0] == pages[1]
+    assert "index.html" in pages[0]
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anything")

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from harness.errors import InputError
-from harness.experiment.mesh_location import locate_mesh
+from harness.experiment.mesh_location import SUFFIXES, locate_mesh
+from harness.scene.formats import FORMATS
 
 
 @pytest.fixture
@@ -77,3 +78,11 @@ def test_a_package_that_is_none_is_refused(places: Path) -> None:
 def test_near_misses_are_named(places: Path) -> None:
     assert refused("shard.ply").endswith('did you mean "shared.ply"?')
     assert refused("package:pybullet_data/duk.obj").endswith('did you mean "package:pybullet_data/duck.obj"?')
+
+
+def test_only_files_that_can_be_read_are_suggested(places: Path) -> None:
+    assert set(SUFFIXES) == {f".{form}" for form in FORMATS}
+    (places / "lab" / "duckling.dae").write_text("")
+    assert "did you mean" not in refused("duckling.obj")
+    (places / "lab" / "duckling.stl").write_text("")
+    assert 'did you mean "duckling.stl"?' in refused("duckling.obj")

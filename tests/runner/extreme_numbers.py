@@ -133,7 +133,7 @@ def outcome(experiment: dict[str, Any], opened: dict[Path, Mesh], servers: Serve
     cube = next(iter(opened))
     named = dict.fromkeys(loaded.mesh_paths.values(), opened[cube])
     with Child.fork(partial(_plan, loaded, named)) as child:
-        planned = child.receive(PLAN_SECONDS)
+        planned = child.receive(20 * PLAN_SECONDS)
         told = pickle.loads(planned) if isinstance(planned, bytes) else f"{planned}, {child.end()}"
     if told not in ("planned", "refused"):
         return "plan failed", told
@@ -151,7 +151,7 @@ def outcome(experiment: dict[str, Any], opened: dict[Path, Mesh], servers: Serve
 
 def _plan(loaded: Any, named: dict[Path, Mesh], channel: Channel) -> None:
     """In a process of its own: `harness plan`, and how it ends."""
-    limit(memory=2**30)
+    limit(memory=2**30, processor=PLAN_SECONDS)
     point = loaded.points[0]
     try:
         plan_of(point, build_scene(point, mesh_of(loaded, point, named), loaded.measure.memory))

@@ -50,7 +50,7 @@ class Hit(Killed):
         """One sweep, hit while it starts, runs or ends."""
         sweep = self.start()
         assert sweep.stderr is not None
-        wanted = self.order.choice((0, 0, 1, 2, 4))
+        wanted, before = self.order.choice((0, 0, 1, 2, 4)), len(self.said)
         while wanted and (line := sweep.stderr.readline()):
             self._hear(line)
             wanted -= ": ok" in line
@@ -66,7 +66,7 @@ class Hit(Killed):
         self.check()
         assert "Traceback" not in rest or name == "SIGKILL", rest
         if sweep.returncode != 0:  # else it was hit too late
-            started = bool(rest or self.said)
+            started = bool(rest) or len(self.said) > before  # else Python itself had not, and a signal ends it as any
             assert sweep.returncode == ENDS[name] or not started, f"exit code {sweep.returncode}: {rest}"
             assert name == "SIGKILL" or "kept" in rest or "interrupted" in rest or not started, rest
         assert sweep.returncode != 0 or "runs done" in output
@@ -116,7 +116,7 @@ SLOWLY = f"""        self.calls += 1
 
 def once(target: str, name: str, tries: int, seed: int = 259) -> int:
     """So many tries of one signal at one target; the failures."""
-    failures, done = 0, 0
+    failures, done, shown = 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
         ends = target == "sweep" and name in ENDS
         hit = Hit(Path(folder), repeats=5 * tries if ends else 2 * tries, seed=seed)
@@ -135,6 +135,9 @@ def once(target: str, name: str, tries: int, seed: int = 259) -> int:
                 print(f"{name} at the {target}, try {done}: {error}", flush=True)
                 for process in hit.processes():
                     process.kill()
+            if done < tries and done // 10 > shown // 10:  # so that something is known if this is broken off
+                print(f"{name} at the {target}: {done} tries so far, {failures} failures", flush=True)
+                shown = done
     print(f"{name} at the {target}: {done} tries, {failures} failures", flush=True)
     return failures
 

@@ -27,21 +27,22 @@ measure: {repeats: 2}
 
 
 class LocalScheduler:
-    """A scheduler and two workers, each a process of its own, as on a cluster. A context."""
+    """A scheduler and workers, each a process of its own, as on a cluster. A context."""
 
-    def __init__(self, folder):
-        self._folder, self._open = folder, ExitStack()
+    def __init__(self, folder, workers=2):
+        self._folder, self._count, self._open = folder, workers, ExitStack()
 
     def __enter__(self):
         file = self._folder / "scheduler.json"
-        self._start("scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+        self.scheduler = self._start("scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
         deadline = time.monotonic() + 30
         while not file.exists() or not file.read_text():
             assert time.monotonic() < deadline, "no scheduler"
             time.sleep(0.05)
         self.address = json.loads(file.read_text())["address"]
         self.workers = [
-            self._start("worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(2)
+            self._start("worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+            for _ in range(self._count)
         ]
         return self
 
@@ -104,6 +105,35 @@ def test_a_cluster_counts_what_one_machine_counts_to_the_bit_even_if_a_worker_di
     assert set(together["machine"]).isdisjoint(alone["machine"])  # times of the two are never paired
     facts = tables.machines("cluster.db")
     assert {facts[machine]["host"] for machine in together["machine"]} == {os.uname().nodename}
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_ends_the_sweep_with_a_sentence_and_the_next_does_the_rest(
+    small, plugin, capfd, monkeypatch
+):
+    """It is killed by a run, so that others are done and kept before."""
+    monkeypatch.setattr("harness.runner.cluster.CONNECT_TIMEOUT", 3.0)
+    plugin(
+        "parts",
+        f"""
+        if self.calls == 1 and len(os.listdir({str(small / "marks")!r})) == 3:
+            os.kill(int(open({str(small / "scheduler")!r}).read()), signal.SIGKILL)
+        if self.calls == 1:
+            open(f"{small / "marks"}/{{os.getpid()}}", "w").close()
+        """,
+    )
+    (small / "marks").mkdir()
+    (small / "parts.yaml").write_text(EXPERIMENT + "engine: {backend: parts, algorithm: native}\n")
+    with LocalScheduler(small, workers=1) as cluster:
+        (small / "scheduler").write_text(str(cluster.scheduler.pid))
+        assert main(["sweep", "parts.yaml", "--db", "parts.db", "--cluster", cluster.address]) == 2
+    said = capfd.readouterr().err
+    assert "the connection to the scheduler was lost; every finished run is kept" in said
+    assert "Traceback" not in said
+    kept = len(counted("parts.db"))
+    assert kept < 6
+    assert main(["sweep", "parts.yaml", "--db", "parts.db"]) == 0
+    assert f"{6 - kept} runs done ({6 - kept} ok), {kept} kept from before" in capfd.readouterr().out
 
 
 @pytest.mark.slow

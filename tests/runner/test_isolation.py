@@ -109,11 +109,12 @@ def test_what_a_backend_writes_into_any_file_it_holds_harms_no_other_run(spheres
     ("head", "status", "reason"),
     [
         ("ctypes.string_at(0)\n", "crashed", "signal 11"),
-        ("time.sleep(60)\n", "timeout", "did not end within 1 s"),
+        ("time.sleep(60)\n", "timeout", "did not end within 2 s"),
         ("1 / 0\n", "failed", "ZeroDivisionError"),
     ],
 )
-def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(spheres, plugin, head, status, reason):
+def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(spheres, plugin, head, status, reason, monkeypatch):
+    monkeypatch.setattr("harness.runner.servers._IMPORT", 2.0)
     plugin("broken", head=head)
     experiment = spheres(backend="broken", algorithm="native", timeout=1 if status == "timeout" else 20)
     with Servers() as servers:
@@ -126,6 +127,19 @@ def test_a_backend_that_cannot_be_imported_costs_its_own_runs_only(spheres, plug
         assert run_one(experiment, servers).status == status
         assert time.monotonic() - began < max(1.0, first)  # it is not tried again and again
         assert run_one(spheres(), servers).status == "ok"
+
+
+@pytest.mark.slow
+def test_importing_a_backend_is_no_part_of_its_runs(spheres, plugin):
+    plugin("imported", head="time.sleep(3)\n")
+    with Servers() as servers:
+        report = run_one(spheres(backend="imported", algorithm="native", timeout=2), servers)
+    assert (report.status, report.reason) == ("ok", None)
+
+
+@pytest.mark.parametrize("timeout", [1e7, 1e20, 1e30])
+def test_a_limit_longer_than_the_system_can_wait_is_none(spheres, servers, timeout):
+    assert run_one(spheres(timeout=timeout), servers).status == "ok"
 
 
 def test_a_run_has_one_thread_and_one_core(spheres, servers):

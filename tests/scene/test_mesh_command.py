@@ -45,7 +45,6 @@ def test_wrong_input_is_one_sentence_and_exit_2(words, reason, capsys):
     assert "\n" not in said
 
 
-@pytest.mark.slow
 def test_inspect_says_the_facts_in_the_unit_of_the_file(capsys):
     trimesh.creation.box(extents=[2, 2, 2]).export("cube.stl")
     Path("bad.obj").write_text("nonsense")
@@ -87,9 +86,7 @@ def test_weld_closes_a_mesh_whose_vertices_lie_within_rounding_and_says_how_many
 
 def test_weld_leaves_out_faces_that_lose_a_corner(capsys):
     cube = trimesh.creation.box()
-    x, y, z = cube.vertices[6] * (1, 1, 0.9998)  # near a corner, on an edge from it
-    other = next(k + 1 for k in range(8) if (cube.vertices[k][:2] != cube.vertices[6][:2]).any())
-    Path("cube.obj").write_text(cube.export(file_type="obj") + f"\nv {x} {y} {z}\nf 7 {other} 9\n")
+    Path("cube.obj").write_text(cube.export(file_type="obj") + "\nv 0.5 0.4999 0.4999\nf 7 8 9\n")
     assert main(["mesh", "weld", "cube.obj", "--within", "1e-3", "--out", "cube.ply"]) == 0
     assert "1 face with two corners so welded left out" in capsys.readouterr().out
     assert len(read_mesh("cube.ply").faces) == 12

@@ -116,10 +116,7 @@ def test_arrays_are_contiguous_and_cannot_be_written():
 
 
 def test_what_is_no_solid_surface_is_refused_with_the_reason(tmp_path):
-    flat = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
     for vertices, faces, reason in (
-        (flat, [[0, 1, 2], [1, 2, 3]], "flat"),
-        (flat[:3], [[0, 1, 2]], "flat"),
         (CUBE.vertices, np.empty((0, 3), int), "empty"),
         (CUBE.vertices, [[0, 1, 99]], "1 of the mesh's faces name a vertex that does not exist"),
         (CUBE.vertices, [[0, 1, -1]], "does not exist"),
