@@ -122,6 +122,7 @@ def test_a_file_gets_what_would_be_printed(filled: Path, capsys: pytest.CaptureF
 def test_nothing_to_read_and_nowhere_to_write_are_said(filled: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such file"):
         exported("--db", str(tmp_path / "none.db"))
+    (tmp_path / "none").touch()
     with pytest.raises(InputError, match="cannot be written"):
         exported("--db", str(filled), "--out", str(tmp_path / "none" / "runs.csv"))
 
