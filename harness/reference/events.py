@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from harness.arrays import Floats, Ints, Pairs
 from harness.motion.hits import Trace
 
@@ -24,5 +26,5 @@ class Events(NamedTuple):
 
     @classmethod
     def of(cls, trace: Trace) -> Events:
-        """Those of a run."""
-        return cls(trace.times, trace.bodies, trace.walls)
+        """Those of a run, in arrays of one layout whatever the run keeps them in: kernels are compiled for each."""
+        return cls(*(np.ascontiguousarray(part) for part in (trace.times, trace.bodies, trace.walls)))

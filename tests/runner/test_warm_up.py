@@ -10,6 +10,7 @@ from harness.runner.execute import execute
 from harness.runner.warm_up import warm_up, warm_ups
 from harness.scene.mesh_file import make_mesh
 from tests.conftest import cube_mesh
+from tests.runner.conftest import SPHERES
 
 
 def compiled():
@@ -47,6 +48,17 @@ def test_after_the_warm_up_nothing_is_compiled(spheres, shape, response, count, 
     warm_up(point)
     before = compiled()
     execute(point, mesh)
+    assert compiled() == before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("response", ["elastic", "none"])
+def test_after_the_warm_up_nothing_is_compiled_for_a_reference(spheres, response):
+    measured = SPHERES.replace("timeout: 20", "timeout: 20, reference: {}")
+    point = spheres(measured, response=response, count=12, algorithm="grid").points[0]
+    warm_up(point)
+    before = compiled()
+    execute(point, None)
     assert compiled() == before
 
 
