@@ -13,11 +13,11 @@ import numpy as np
 
 from harness.kernel import inner, kernel
 from harness.narrowphase.gjk import Relative, WarmStart, difference, hull_distance, vertex_a, vertex_b
-from harness.narrowphase.mesh_advancement import MESH_COLD_START, MeshShape, MeshWarmStart, mesh_shape
+from harness.narrowphase.mesh_advancement import MeshShape, MeshWarmStart, mesh_shape
 from harness.narrowphase.simplex import Simplex
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.surface_gap import Blocks, SearchRoom, surface_gap
-from harness.narrowphase.tree_pairs import NO_NODES, Trees
+from harness.narrowphase.tree_pairs import Trees
 from harness.narrowphase.triangle_blocks import TriangleBlocks, block_triangle_a, block_triangle_b, triangle_blocks
 from harness.narrowphase.triangle_distance import walk
 from harness.narrowphase.vectors import Vector, dot, plus, scaled, unit
@@ -37,9 +37,9 @@ class Gap(NamedTuple):
 
     Attributes
     ----------
-    lower, upper : bounds on the gap, up to rounding of 1e-15 of the sizes and of the distance; 0 where the bodies touch,
-        inf where they are certainly farther apart than a limit
-    point_a, point_b : points of the bodies that are `upper` apart; the same one where they touch, nan beyond the limit
+    lower, upper : bounds on the gap, up to rounding of 1e-15 of the sizes and of the distance; 0 where the bodies
+        touch, inf where they are certainly farther apart than a limit
+    point_a, point_b : points of the bodies that are `upper` apart; the same one where they touch, nan beyond a limit
     """
 
     lower: float

@@ -1,11 +1,11 @@
-"""Distance of two surfaces, as far as it is below a limit.
+"""Distance of two surfaces and their nearest triangles, warm-started, as far as it is below a limit.
 
 A descent through both trees at once, the nearer halves first. Every pair of nodes has a bound below which its triangles
 cannot come, and is left where that is no less than the least distance found so far. The bound of discs is the greatest
 of three, of which each splits the way between two points in a part along an axis and a part across it: the normals of
 both discs, and the direction of the least distance so far, along which most of two surfaces that bulge towards each
-other is seen to be farther apart. A search that begins with the nearest triangles of an earlier one has little to do but
-to prove that they are nearest still.
+other is seen to be farther apart. A search that begins with the nearest triangles of an earlier one has little to do
+but to prove that they are nearest still.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def surface_gap(
         if room.bounds[height] >= limit * limit:
             continue
         nodes = NodePair(room.nodes[height, 0], room.nodes[height, 1])
-        if blocks.a.count[nodes.a] <= BLOCK and blocks.b.count[nodes.b] <= BLOCK:
+        if blocks.a.counts[nodes.a] <= BLOCK and blocks.b.counts[nodes.b] <= BLOCK:
             best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, room.parts)
         else:
             height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, room, height)
@@ -135,7 +135,7 @@ def push_halves(
 ) -> int:
     """Replace a pair of nodes by those of its halves that may come below a limit; returns the stack's new height."""
     a, b = nodes
-    many_a, many_b = blocks.a.count[a] > BLOCK, blocks.b.count[b] > BLOCK
+    many_a, many_b = blocks.a.counts[a] > BLOCK, blocks.b.counts[b] > BLOCK
     larger_a = trees.a.discs[a, 3] * pose.size_a >= trees.b.discs[b, 3] * pose.size_b
     if not many_b or (many_a and larger_a):
         left, right = NodePair(a + 1, b), NodePair(trees.a.right[a], b)
@@ -218,11 +218,11 @@ def nearest_of_blocks(
 ) -> tuple[SurfaceGap, float]:
     """The best so far and its limit, or those of the nearest triangles below two nodes, if these are nearer."""
     a, b, axis = blocks.a, blocks.b, best.axis
-    begin_a, begin_b, count = a.first[nodes.a], b.first[nodes.b], b.count[nodes.b]
+    begin_a, begin_b, count = a.first[nodes.a], b.first[nodes.b], b.counts[nodes.b]
     highest = place_block(b, pose, begin_b, count, axis, parts)
     x, y, z = scaled(axis, pose.size_a)
     c, size = a.corners, pose.size_a
-    for i in range(begin_a, begin_a + a.count[nodes.a]):
+    for i in range(begin_a, begin_a + a.counts[nodes.a]):
         low = min(
             min(x * c[0, i] + y * c[1, i] + z * c[2, i], x * c[3, i] + y * c[4, i] + z * c[5, i]),
             x * c[6, i] + y * c[7, i] + z * c[8, i],

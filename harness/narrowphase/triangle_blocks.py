@@ -25,14 +25,14 @@ class TriangleBlocks(NamedTuple):
 
     Attributes
     ----------
-    first, count : (nodes,) int array, of each node: where the triangles below it begin, and how many they are
+    first, counts : (nodes,) int array, of each node: where the triangles below it begin, and how many they are
     leaves : (f,) int array, the node of each triangle
     balls : (4, f) float array, centres and radii of spheres around the triangles
     corners : (9, f) float array, x, y, z of each corner
     """
 
     first: Ints
-    count: Ints
+    counts: Ints
     leaves: Ints
     balls: Floats
     corners: Floats
@@ -42,15 +42,15 @@ class TriangleBlocks(NamedTuple):
 def triangle_blocks(tree: TriangleTree) -> TriangleBlocks:
     """The blocks of a tree."""
     nodes, faces = len(tree.right), len(tree.corners)
-    first, count, leaves = np.zeros(nodes, np.int64), np.ones(nodes, np.int64), np.empty(faces, np.int64)
+    first, counts, leaves = np.zeros(nodes, np.int64), np.ones(nodes, np.int64), np.empty(faces, np.int64)
     balls, corners = np.empty((4, faces)), np.empty((9, faces))
     for node in range(nodes - 1, -1, -1):  # children come after their parents
         if tree.right[node] >= 0:
-            count[node] = count[node + 1] + count[tree.right[node]]
+            counts[node] = counts[node + 1] + counts[tree.right[node]]
     for node in range(nodes):
         right = tree.right[node]
         if right >= 0:
-            first[node + 1], first[right] = first[node], first[node] + count[node + 1]
+            first[node + 1], first[right] = first[node], first[node] + counts[node + 1]
         else:
             place = first[node]
             leaves[place] = node
@@ -59,7 +59,7 @@ def triangle_blocks(tree: TriangleTree) -> TriangleBlocks:
             for corner in range(3):
                 for axis in range(3):
                     corners[3 * corner + axis, place] = tree.corners[-1 - right, corner, axis]
-    return TriangleBlocks(first, count, leaves, balls, corners)
+    return TriangleBlocks(first, counts, leaves, balls, corners)
 
 
 @inner
