@@ -1,4 +1,4 @@
-"""Times of impact of two bodies for many motions, one after the other in one kernel; each as if it were the only one."""
+"""Times of impact of two bodies for many motions, one after another in one kernel; each as if it were the only one."""
 
 from __future__ import annotations
 

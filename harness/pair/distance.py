@@ -18,8 +18,8 @@ class Distance(NamedTuple):
     Attributes
     ----------
     gap : float, or (n,) array, m; 0 where they touch
-    points : (2, 3) or (n, 2, 3) float array, m, in the world: the nearest points of the first and the second body; twice
-        the same, of both, where they touch
+    points : (2, 3) or (n, 2, 3) float array, m, in the world: the nearest points of the first and the second body;
+        twice the same, of both, where they touch
     """
 
     gap: float | Floats
