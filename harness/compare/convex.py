@@ -95,9 +95,9 @@ def connect(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Co
         kept, weights, total = _nearest_to_origin(corners)
         simplex = [simplex[place] for place in kept]
         nearest = _mixed(tuple(zip(kept, weights, strict=True)), corners)
-        ends = tuple(tuple((pair[side], w) for pair, w in zip(simplex, weights, strict=True)) for side in (0, 1))
+        end, other_end = (tuple((pair[k], w) for pair, w in zip(simplex, weights, strict=True)) for k in (0, 1))
         if nearest == (0, 0, 0):
-            return CommonPoint(*ends)
+            return CommonPoint(end, other_end)
         # floats propose the next pair of points, which may be any that comes nearer; only where they find none are all
         # looked at
         along, reached = _rough([nearest])[0], dot(nearest, nearest)
@@ -106,7 +106,7 @@ def connect(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Co
             least = min(range(len(first)), key=lambda a: dot(nearest, first[a]))
             most = max(range(len(second)), key=lambda b: dot(nearest, second[b]))
             if dot(nearest, minus(first[least], second[most])) * total >= reached:
-                return Connection(*ends, Plane(nearest))
+                return Connection(end, other_end, Plane(nearest))
         simplex.append((least, most))
 
 

@@ -92,7 +92,9 @@ def mesh_gap_shape(mesh: Mesh) -> MeshGapShape:
 def sphere_gap(offset: Vector, radius_a: float, radius_b: float) -> Gap:
     """The gap of two spheres; the offset is from a's centre to b's. The points are in the axes of the offset."""
     distance = sqrt(dot(offset, offset))
-    towards = scaled(offset, 1.0 / distance) if distance > 0.0 else (1.0, 0.0, 0.0)
+    towards = (1.0, 0.0, 0.0)
+    if distance > 0.0:
+        towards = offset[0] / distance, offset[1] / distance, offset[2] / distance
     gap = distance - (radius_a + radius_b)
     if gap > 0.0:
         return Gap(gap, gap, scaled(towards, radius_a), scaled(towards, distance - radius_b))
