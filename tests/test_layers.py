@@ -39,6 +39,7 @@ KNOWS = {
     "runner": FLIGHT | {"experiment", "reference", "store"},
     "replay": {"store"},
     "report": {"store", "measure", "replay"},
+    "pair": {"experiment", "scene", "narrowphase"},
     "cli": FLIGHT | {"experiment", "reference", "store", "compare", "runner", "replay", "report"},
 }
 LIBRARIES = {"fcl", "pybullet", "coal", "mujoco", "trimesh"}

@@ -63,8 +63,8 @@ def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", blocks("From Python", "python"))
-def test_the_lines_for_python_run(block, monkeypatch):
+def test_the_lines_for_python_run(monkeypatch):
+    block = blocks("From Python", "python")[0]
     monkeypatch.chdir(README.parent)
     small = block.replace("count=[5, 10]", "count=[5], repeats=1, duration=0.2")
     assert small != block
@@ -72,6 +72,16 @@ def test_the_lines_for_python_run(block, monkeypatch):
     exec(small, namespace)
     assert len(namespace["table"]) == 3
     assert (np.diff(namespace["events"].times) >= 0).all()
+
+
+def test_the_lines_for_python_about_two_bodies_run(monkeypatch):
+    block = blocks("From Python", "python")[1]
+    monkeypatch.chdir(README.parent)
+    namespace: dict[str, object] = {}
+    exec(block, namespace)
+    assert namespace["hits"].tolist() == [False, True]
+    assert namespace["gap"][0] > 0 == namespace["gap"][1] == namespace["times"][1]
+    assert 0 < namespace["times"][0] < 1.5
 
 
 def test_the_findings_are_those_that_are_published():

@@ -53,6 +53,21 @@ class Plane:
         return min(dot(self.normal, a) for a in first) > max(dot(self.normal, b) for b in second)
 
 
+@dataclass(frozen=True)
+class Connection:
+    """The shortest connection of two sets that share no point.
+
+    Parameters
+    ----------
+    first, second : weights of its ends, as of a `CommonPoint`
+    plane : across it
+    """
+
+    first: tuple[tuple[int, int], ...]
+    second: tuple[tuple[int, int], ...]
+    plane: Plane
+
+
 def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane:
     """A common point of the hulls of two sets, or the plane across their shortest connection.
 
@@ -67,6 +82,12 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
     >>> meet([(0, 0, 0), (2, 0, 0)], [(1, 0, 0)])
     CommonPoint(first=((0, 2), (1, 2)), second=((0, 2), (0, 2)))
     """
+    found = connect(first, second)
+    return found.plane if isinstance(found, Connection) else found
+
+
+def connect(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Connection:
+    """A common point of the hulls of two sets, or their shortest connection; parameters as for `meet`."""
     rough, other_rough = _rough(first), _rough(second)
     simplex = [(0, 0)]
     while True:
@@ -74,11 +95,9 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
         kept, weights, total = _nearest_to_origin(corners)
         simplex = [simplex[place] for place in kept]
         nearest = _mixed(tuple(zip(kept, weights, strict=True)), corners)
+        end, other_end = (tuple((pair[k], w) for pair, w in zip(simplex, weights, strict=True)) for k in (0, 1))
         if nearest == (0, 0, 0):
-            return CommonPoint(
-                tuple((a, weight) for (a, _), weight in zip(simplex, weights, strict=True)),
-                tuple((b, weight) for (_, b), weight in zip(simplex, weights, strict=True)),
-            )
+            return CommonPoint(end, other_end)
         # floats propose the next pair of points, which may be any that comes nearer; only where they find none are all
         # looked at
         along, reached = _rough([nearest])[0], dot(nearest, nearest)
@@ -87,7 +106,7 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
             least = min(range(len(first)), key=lambda a: dot(nearest, first[a]))
             most = max(range(len(second)), key=lambda b: dot(nearest, second[b]))
             if dot(nearest, minus(first[least], second[most])) * total >= reached:
-                return Plane(nearest)
+                return Connection(end, other_end, Plane(nearest))
         simplex.append((least, most))
 
 

@@ -115,7 +115,7 @@ def time_of_impact(
         turn_a, turn_b = orientation(a, time), orientation(b, time)
         offset = minus(place(b, time), place(a, time))
         pose = relative_pose(turn_a, a.size, turn_b, b.size, offset)
-        found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf)
+        found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf, 0.0)
         start, gap = found.warm_start, found.upper
         length = sqrt(dot(found.axis, found.axis))
         if length > 0.0:

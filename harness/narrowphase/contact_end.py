@@ -156,7 +156,7 @@ def hold_of_hulls(
     """How firmly two hulls touch, whose contact ends at a gap of `near`; and where to start next time."""
     pose = seen.pose
     margin = MARGIN * (pose.size_a + pose.size_b)
-    found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf)
+    found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf, 0.0)
     if found.verdict != PairVerdict.TOUCHING:
         return Hold(0.0, near - found.lower), found.warm_start
     overlap = overlap_lasts(hull_a, hull_b, seen, found.warm_start)

@@ -89,7 +89,14 @@ def relative_pose(rotation_a: Matrix, size_a: float, rotation_b: Matrix, size_b:
 
 @kernel
 def hull_distance(
-    hull_a: SupportMap, hull_b: SupportMap, pose: Relative, start: WarmStart, axis: Vector, margin: float, enough: float
+    hull_a: SupportMap,
+    hull_b: SupportMap,
+    pose: Relative,
+    start: WarmStart,
+    axis: Vector,
+    margin: float,
+    enough: float,
+    tolerance: float,
 ) -> Distance:
     """Distance of two hulls.
 
@@ -101,11 +108,13 @@ def hull_distance(
     axis : for a cold start, the first guess at the direction from b to a; not zero unless the centres coincide
     margin : gap or overlap that a certificate must show, at least MARGIN x (size_a + size_b)
     enough : a gap that need not be known better; `margin` to know only whether they touch
+    tolerance : by how much the two bounds may differ
 
     Returns
     -------
     Distance
-        With `upper` - `lower` within rounding of 1e-14 of the distance, unless `lower` is above `enough`.
+        With `upper` - `lower` within the tolerance, or rounding of 1e-14 of the distance, unless `lower` is above
+        `enough`.
     """
     s0, s1, s2, s3 = start
     if s0 < 0:
@@ -144,7 +153,7 @@ def hull_distance(
             lower, best = along / sqrt(squared), nearest.point
             if lower > enough:
                 break
-        if squared - along <= PRECISION * squared or vertex in simplex.vertices:
+        if squared - along <= max(PRECISION * squared, tolerance * sqrt(squared)) or vertex in simplex.vertices:
             break
         larger = extended(simplex, point, vertex)
         step = nearest_on(larger)

@@ -140,7 +140,7 @@ def settle(
             verdict = PairVerdict.SEPARATE
         else:
             searches += 1
-            found = hull_distance(hull, hull, pose_of(placement, i, j), start, axis, needed, needed)
+            found = hull_distance(hull, hull, pose_of(placement, i, j), start, axis, needed, needed, 0.0)
             verdict, axis = found.verdict, turned(rotation_i, found.axis)
             start = found.warm_start if verdict == PairVerdict.TOUCHING else COLD_START
         now.keys[k], verdicts[k] = key, verdict

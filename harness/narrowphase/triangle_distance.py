@@ -10,6 +10,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from harness.kernel import kernel
 from harness.narrowphase.simplex import (
     ALL_CORNERS,
@@ -21,7 +23,7 @@ from harness.narrowphase.simplex import (
     nearest_on_triangle,
     room_around_origin,
 )
-from harness.narrowphase.vectors import Triangle, Vector, dot, minus, plus, scaled
+from harness.narrowphase.vectors import Triangle, Vector, dot, minus, plus, unit
 
 # Relative distance between the two bounds at which the walk ends; it mostly ends earlier, at corners seen before.
 PRECISION = 1e-14
@@ -42,6 +44,22 @@ class TriangleDistance(NamedTuple):
     axis: Vector
 
 
+class Walk(NamedTuple):
+    """How a walk ended.
+
+    Attributes
+    ----------
+    lower, upper, axis : as of a `TriangleDistance`
+    simplex : of the differences of corners, whose point nearest to the origin is the shortest connection; of four
+        corners, if they hold the origin
+    """
+
+    lower: float
+    upper: float
+    axis: Vector
+    simplex: Simplex
+
+
 @kernel
 def triangle_distance(one: Triangle, other: Triangle, margin: float) -> TriangleDistance:
     """Distance of two triangles, in any one unit.
@@ -57,29 +75,46 @@ def triangle_distance(one: Triangle, other: Triangle, margin: float) -> Triangle
         With `upper` - `lower` within rounding of 1e-14 of the distance, unless the walk ended at the margin.
     """
     middle_one, middle_other = plus(plus(one[0], one[1]), one[2]), plus(plus(other[0], other[1]), other[2])
-    point, corner, _ = lowest(one, other, minus(middle_one, middle_other))
+    found = walk(one, other, minus(middle_one, middle_other), margin, np.inf)
+    return TriangleDistance(found.lower, found.upper, found.axis)
+
+
+@kernel
+def walk(one: Triangle, other: Triangle, towards: Vector, margin: float, enough: float) -> Walk:
+    """The walk towards the shortest connection of two triangles.
+
+    Parameters
+    ----------
+    one, other : Triangle
+    towards : the first guess at the direction from the second to the first; zero is as good as none
+    margin : a distance that need not be told from 0
+    enough : a distance that need not be known better
+    """
+    point, corner, _ = lowest(one, other, towards)
     simplex = Simplex(point, point, point, point, (corner, -1, -1, -1), 1)
     nearest = Nearest(point, dot(point, point), 1)
     lower, axis = 0.0, point
     for _ in range(MOST_STEPS):
         squared = nearest.squared
         if squared <= margin * margin:
-            return TriangleDistance(0.0, sqrt(squared), unit(axis))
+            return Walk(0.0, sqrt(squared), unit(axis), simplex)
         point, corner, along = lowest(one, other, nearest.point)
         if along > 0.0 and along > lower * sqrt(squared):
             lower, axis = along / sqrt(squared), nearest.point
+            if lower > enough:
+                break
         if squared - along <= PRECISION * squared or corner in simplex.vertices:
             break
         larger = extended(simplex, point, corner)
         step = nearest_on(larger)
         if step.corners == ALL_CORNERS:
             if room_around_origin(larger.a, larger.b, larger.c, larger.d) > 0.0:
-                return TriangleDistance(0.0, 0.0, unit(axis))
+                return Walk(0.0, 0.0, unit(axis), larger)
             step = nearest_on_flat(larger.a, larger.b, larger.c, larger.d)
         if not step.squared < squared:  # rounding ends the descent
             break
         simplex, nearest = kept(larger, step.corners), step
-    return TriangleDistance(lower, max(lower, sqrt(nearest.squared)), unit(axis))
+    return Walk(lower, max(lower, sqrt(nearest.squared)), unit(axis), simplex)
 
 
 @kernel
@@ -110,10 +145,3 @@ def lowest(one: Triangle, other: Triangle, axis: Vector) -> tuple[Vector, int, f
         if height > height_b:
             b, j, height_b = other[corner], corner, height
     return minus(a, b), 3 * i + j, height_a - height_b
-
-
-@kernel
-def unit(axis: Vector) -> Vector:
-    """Of length 1, or zero."""
-    length = sqrt(dot(axis, axis))
-    return scaled(axis, 1.0 / length) if length > 0.0 else axis

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 from harness.kernel import kernel
 
 Vector = tuple[float, float, float]
@@ -34,6 +36,13 @@ def minus(a: Vector, b: Vector) -> Vector:
 @kernel
 def scaled(a: Vector, factor: float) -> Vector:
     return a[0] * factor, a[1] * factor, a[2] * factor
+
+
+@kernel
+def unit(a: Vector) -> Vector:
+    """Of length 1, or zero."""
+    length = sqrt(dot(a, a))
+    return scaled(a, 1.0 / length) if length > 0.0 else a
 
 
 @kernel

@@ -40,7 +40,7 @@ def gap_at(a, b, hull, time):
     places = [np.array(m.position) + np.multiply(m.velocity, time) for m in (a, b)]
     turn_a, turn_b = (rotation(q[3], q[0], q[1], q[2]) for q in turned)
     pose = relative_pose(turn_a, a.size, turn_b, b.size, tuple(places[1] - places[0]))
-    return hull_distance(hull, hull, pose, COLD_START, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf).lower
+    return hull_distance(hull, hull, pose, COLD_START, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf, 0.0).lower
 
 
 def test_cubes_that_meet_face_to_face_do_so_on_time():

@@ -96,7 +96,9 @@ def test_hulls_overlap_at_every_instant_of_a_contact_and_at_none_between(seed, n
             pose = relative_pose(
                 orientation(a, time), a.size, orientation(b, time), b.size, minus(place(b, time), place(a, time))
             )
-            found = hull_distance(hull, hull, pose, COLD_START, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf)
+            found = hull_distance(
+                hull, hull, pose, COLD_START, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf, 0.0
+            )
             inside = np.searchsorted(ends, time) % 2 == 1
             expected = PairVerdict.TOUCHING if inside else PairVerdict.SEPARATE
             assert found.verdict == expected or (inside and found.lower <= 1.25e-7)

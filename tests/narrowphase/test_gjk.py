@@ -23,7 +23,7 @@ def ask(hull, turn_a, size_a, turn_b, size_b, offset, start, enough):
     b = rotation(turn_b[0], turn_b[1], turn_b[2], turn_b[3])
     pose = relative_pose(a, size_a, b, size_b, (offset[0], offset[1], offset[2]))
     axis = (-pose.offset[0], -pose.offset[1], -pose.offset[2])
-    return hull_distance(hull, hull, pose, start, axis, MARGIN * (size_a + size_b), enough), pose
+    return hull_distance(hull, hull, pose, start, axis, MARGIN * (size_a + size_b), enough, 0.0), pose
 
 
 def distance(mesh, offset, turn_a=STRAIGHT, turn_b=STRAIGHT, sizes=(1.0, 1.0), start=COLD_START, enough=np.inf):

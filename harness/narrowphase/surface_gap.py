@@ -1,0 +1,299 @@
+"""Distance of two surfaces and their nearest triangles, warm-started, as far as it is below a limit.
+
+A descent through both trees at once, the nearer halves first. Every pair of nodes has a bound below which its triangles
+cannot come, and is left where that is no less than the least distance found so far. The bound of discs is the greatest
+of three, of which each splits the way between two points in a part along an axis and a part across it: the normals of
+both discs, and the direction of the least distance so far, along which most of two surfaces that bulge towards each
+other is seen to be farther apart. A search that begins with the nearest triangles of an earlier one has little to do
+but to prove that they are nearest still.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from harness.arrays import Floats, Ints
+from harness.kernel import inner, kernel
+from harness.narrowphase.gjk import Relative
+from harness.narrowphase.placed_parts import Disc, disc_a, disc_b
+from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees
+from harness.narrowphase.triangle_blocks import BLOCK, TriangleBlocks, block_triangle_a, block_triangle_b
+from harness.narrowphase.triangle_distance import walk
+from harness.narrowphase.vectors import Vector, dot, minus, scaled, turned_back
+
+# Relative surplus of a limit, so that rounding leaves out nothing that is just as far.
+SURPLUS = 1e-15
+
+
+class Blocks(NamedTuple):
+    """The triangles of bodies a and b."""
+
+    a: TriangleBlocks
+    b: TriangleBlocks
+
+
+class SearchRoom(NamedTuple):
+    """What a search writes to.
+
+    Attributes
+    ----------
+    nodes : (DEPTH, 2) int array, pairs of nodes that are yet to be looked at
+    bounds : (DEPTH,) float array, of each the square of what it cannot come below
+    parts : (4, BLOCK) float array, of each triangle of a block how far it reaches along an axis, and the centre of the
+        sphere around it
+    """
+
+    nodes: Ints
+    bounds: Floats
+    parts: Floats
+
+
+class SurfaceGap(NamedTuple):
+    """How far two surfaces are apart.
+
+    Attributes
+    ----------
+    lower, gap : bounds on the distance; inf beyond the limit
+    axis : unit vector from b to a, of the shortest connection; of no meaning beyond the limit
+    leaves : of the nearest triangles; -1 beyond the limit
+    """
+
+    lower: float
+    gap: float
+    axis: Vector
+    leaves: NodePair
+
+
+@kernel
+def search_room() -> SearchRoom:
+    """Unwritten."""
+    return SearchRoom(np.empty((DEPTH, 2), np.int64), np.empty(DEPTH), np.empty((4, BLOCK)))
+
+
+@kernel
+def surface_gap(
+    trees: Trees,
+    blocks: Blocks,
+    pose: Relative,
+    start: NodePair,
+    axis: Vector,
+    limit: float,
+    enough: float,
+    tolerance: float,
+    room: SearchRoom,
+) -> SurfaceGap:
+    """The distance of two surfaces, and between which triangles.
+
+    Parameters
+    ----------
+    trees, blocks : Trees and their Blocks
+    pose : Relative
+    start : leaves to begin with, or NO_NODES. They only save time.
+    axis : unit vector, a guess at the direction from b to a. It only saves time.
+    limit : beyond which the distance does not matter
+    enough : a distance that need not be known better, such as one that cannot be told from 0
+    tolerance : how much smaller than `gap` the distance may be
+    room : written
+
+    Returns
+    -------
+    SurfaceGap
+        With `gap` - `lower` within the tolerance, and rounding of 1e-14 of the distance, unless `gap` is `enough`.
+    """
+    best = SurfaceGap(np.inf, np.inf, axis, NO_NODES)
+    limit += SURPLUS * limit
+    if start.a >= 0:
+        first, other = blocks.a.first[start.a], blocks.b.first[start.b]
+        best, limit = nearer_triangles(blocks, pose, first, other, enough, tolerance, best, limit)
+    room.nodes[0, 0], room.nodes[0, 1], room.bounds[0] = 0, 0, 0.0
+    height = 1
+    while height > 0 and best.gap > enough:
+        height -= 1
+        if room.bounds[height] >= limit * limit:
+            continue
+        nodes = NodePair(room.nodes[height, 0], room.nodes[height, 1])
+        if blocks.a.counts[nodes.a] <= BLOCK and blocks.b.counts[nodes.b] <= BLOCK:
+            best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, room.parts)
+        else:
+            height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, room, height)
+    return best
+
+
+@inner
+def push_halves(
+    trees: Trees,
+    blocks: Blocks,
+    pose: Relative,
+    nodes: NodePair,
+    axis: Vector,
+    squared_limit: float,
+    room: SearchRoom,
+    height: int,
+) -> int:
+    """Replace a pair of nodes by those of its halves that may come below a limit; returns the stack's new height."""
+    a, b = nodes
+    many_a, many_b = blocks.a.counts[a] > BLOCK, blocks.b.counts[b] > BLOCK
+    larger_a = trees.a.discs[a, 3] * pose.size_a >= trees.b.discs[b, 3] * pose.size_b
+    if not many_b or (many_a and larger_a):
+        left, right = NodePair(a + 1, b), NodePair(trees.a.right[a], b)
+        whole = disc_b(trees.b, pose, b)
+        of_left = nearness(disc_a(trees.a, pose, left.a), whole, axis, squared_limit)
+        of_right = nearness(disc_a(trees.a, pose, right.a), whole, axis, squared_limit)
+    else:
+        left, right = NodePair(a, b + 1), NodePair(a, trees.b.right[b])
+        whole = disc_a(trees.a, pose, a)
+        of_left = nearness(whole, disc_b(trees.b, pose, left.b), axis, squared_limit)
+        of_right = nearness(whole, disc_b(trees.b, pose, right.b), axis, squared_limit)
+    if of_left[0] > of_right[0] or (of_left[0] == of_right[0] and of_left[1] > of_right[1]):
+        left, of_left, right, of_right = right, of_right, left, of_left
+    if of_right[0] < squared_limit:
+        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = right.a, right.b, of_right[0]
+        height += 1
+    if of_left[0] < squared_limit:
+        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = left.a, left.b, of_left[0]
+        height += 1
+    return height
+
+
+@kernel
+def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> tuple[float, float]:
+    """The square of a bound below which two discs cannot come, and how near they are to each other's centres.
+
+    The bound is as great as can be only where it is below the limit.
+    """
+    between = minus(two.centre, one.centre)
+    squared = dot(between, between)
+    reach = one.radius + two.radius
+    bound = max(0.0, sqrt(squared) - reach) ** 2
+    near = squared / (reach * reach)
+    if bound < squared_limit:
+        cosine_one, cosine_two = dot(one.normal, axis), dot(two.normal, axis)
+        extent = extent_along(one, cosine_one) + extent_along(two, cosine_two)
+        bound = max(bound, split(dot(axis, between), squared, extent, reach))
+    if bound < squared_limit:
+        cosine = dot(one.normal, two.normal)
+        along = dot(one.normal, between)
+        bound = max(bound, split(along, squared, one.thickness + extent_along(two, cosine), reach))
+        along = dot(two.normal, between)
+        bound = max(bound, split(along, squared, two.thickness + extent_along(one, cosine), reach))
+    return bound, near
+
+
+@inner
+def extent_along(disc: Disc, cosine: float) -> float:
+    """How far a disc reaches from its centre along an axis, given the cosine of the axis and its normal."""
+    sine = sqrt(max(0.0, 1.0 - cosine * cosine)) + 1e-7  # more than rounding takes from it
+    return disc.thickness * abs(cosine) + disc.radius * sine
+
+
+@inner
+def split(along: float, squared: float, extent: float, reach: float) -> float:
+    """A bound, squared, from the ways between two discs along an axis and across it.
+
+    Parameters
+    ----------
+    along : the way between the centres along the axis
+    squared : the whole way between them
+    extent : how far both reach along the axis
+    reach : how far both reach across it
+    """
+    apart = max(0.0, abs(along) - extent)
+    across = max(0.0, sqrt(max(0.0, squared - along * along)) - reach)
+    return apart * apart + across * across
+
+
+@kernel
+def nearest_of_blocks(
+    blocks: Blocks,
+    pose: Relative,
+    nodes: NodePair,
+    enough: float,
+    tolerance: float,
+    best: SurfaceGap,
+    limit: float,
+    parts: Floats,
+) -> tuple[SurfaceGap, float]:
+    """The best so far and its limit, or those of the nearest triangles below two nodes, if these are nearer."""
+    a, b, axis = blocks.a, blocks.b, best.axis
+    begin_a, begin_b, count = a.first[nodes.a], b.first[nodes.b], b.counts[nodes.b]
+    highest = place_block(b, pose, begin_b, count, axis, parts)
+    x, y, z = scaled(axis, pose.size_a)
+    c, size = a.corners, pose.size_a
+    for i in range(begin_a, begin_a + a.counts[nodes.a]):
+        low = min(
+            min(x * c[0, i] + y * c[1, i] + z * c[2, i], x * c[3, i] + y * c[4, i] + z * c[5, i]),
+            x * c[6, i] + y * c[7, i] + z * c[8, i],
+        )
+        if low - highest >= limit:
+            continue
+        at_x, at_y, at_z, radius = (
+            size * a.balls[0, i],
+            size * a.balls[1, i],
+            size * a.balls[2, i],
+            size * a.balls[3, i],
+        )
+        for j in range(count):
+            gap = low - parts[0, j]
+            between = parts[1, j] - at_x, parts[2, j] - at_y, parts[3, j] - at_z
+            reach = radius + pose.size_b * b.balls[3, begin_b + j]
+            squared = dot(between, between)
+            if gap >= limit or squared >= (reach + limit) * (reach + limit):
+                continue
+            if gap > 0.0:
+                along = dot(axis, between)
+                across = sqrt(max(0.0, squared - along * along)) - reach
+                if across > 0.0 and gap * gap + across * across >= limit * limit:
+                    continue
+            best, limit = nearer_triangles(blocks, pose, i, begin_b + j, enough, tolerance, best, limit)
+            if best.gap <= enough:
+                return best, limit
+    return best, limit
+
+
+@inner
+def place_block(blocks: TriangleBlocks, pose: Relative, begin: int, count: int, axis: Vector, parts: Floats) -> float:
+    """Place triangles of body b in the axes of a: how far they reach along an axis, and the spheres around them.
+
+    Returns how far the farthest reaches.
+    """
+    c, q, size = blocks.corners, blocks.balls, pose.size_b
+    x, y, z = scaled(turned_back(pose.rotation, axis), size)
+    lift, turn, highest = dot(axis, pose.offset), pose.rotation, -np.inf
+    for j in range(count):
+        k = begin + j
+        high = max(
+            max(x * c[0, k] + y * c[1, k] + z * c[2, k], x * c[3, k] + y * c[4, k] + z * c[5, k]),
+            x * c[6, k] + y * c[7, k] + z * c[8, k],
+        )
+        parts[0, j] = lift + high
+        highest = max(highest, lift + high)
+        centre = size * q[0, k], size * q[1, k], size * q[2, k]
+        parts[1, j] = pose.offset[0] + dot(turn[0], centre)
+        parts[2, j] = pose.offset[1] + dot(turn[1], centre)
+        parts[3, j] = pose.offset[2] + dot(turn[2], centre)
+    return highest
+
+
+@kernel
+def nearer_triangles(
+    blocks: Blocks,
+    pose: Relative,
+    i: int,
+    j: int,
+    enough: float,
+    tolerance: float,
+    best: SurfaceGap,
+    limit: float,
+) -> tuple[SurfaceGap, float]:
+    """The best so far and its limit, or those of two triangles, by their places in the blocks, if these are nearer."""
+    one, other = block_triangle_a(blocks.a, pose, i), block_triangle_b(blocks.b, pose, j)
+    found = walk(one, other, best.axis, enough, limit)
+    lower = min(best.lower, found.lower)
+    if found.upper > limit:
+        return SurfaceGap(best.lower if found.lower >= limit else lower, best.gap, best.axis, best.leaves), limit
+    limit = min(limit, max(0.0, found.upper - tolerance))
+    leaves = NodePair(blocks.a.leaves[i], blocks.b.leaves[j])
+    return SurfaceGap(min(lower, limit), found.upper, found.axis, leaves), limit

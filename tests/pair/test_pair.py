@@ -1,0 +1,178 @@
+"""What Python is told of two bodies, against closed forms and the exact judge; and what it is told of nonsense."""
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import harness
+from harness.compare.exact import Placed
+from harness.compare.exact_distance import hull_distance, surface_distance
+from harness.errors import InputError
+from harness.scene.mesh_file import make_mesh
+from tests.narrowphase.meshes import turns
+
+# of a size, and of the gap: how far a gap may be off
+OF_SIZE, OF_GAP = 1e-12, 2e-15
+
+
+def solid(rng, form):
+    """A mesh of few faces."""
+    if form == "star":  # a concave one
+        box = trimesh.creation.icosphere(subdivisions=1)
+        return trimesh.Trimesh(box.vertices * rng.uniform(0.4, 1.0, (len(box.vertices), 1)), box.faces, process=False)
+    stretch = {"cube": [1, 1, 1], "needle": [1, 1e-6, 1e-6], "flat": [1, 1, 1e-7]}[form]
+    box = trimesh.creation.box()
+    return trimesh.Trimesh(box.vertices * stretch, box.faces, process=False)
+
+
+def placed_at(rng, gap, ratio, far):
+    """Two poses whose bounding spheres are about a gap apart, at coordinates of a given size."""
+    sizes = 1.0, 10.0**ratio
+    way = rng.normal(size=3) if rng.random() < 0.6 else np.eye(3)[rng.integers(3)]
+    start = far * rng.normal(size=3)
+    end = start + way / np.linalg.norm(way) * (sum(sizes) / 2 * rng.uniform(0.3, 1.2) + gap)
+    q = turns(rng, 2)
+    if rng.random() < 0.4:
+        q[1] = q[0] = [1, 0, 0, 0]
+    return sizes, (start, end), q
+
+
+def judged(body, shape):
+    """Vertices in m at the pose of a body, and its parts."""
+    solid = body.mesh.hull if shape == "hull" else body.mesh
+    placed = Placed(solid.vertices * body.size, body.position, body.quaternion)
+    return placed, (np.arange(len(solid.vertices))[None] if shape == "hull" else solid.faces)
+
+
+@pytest.mark.slow
+@settings(max_examples=150)
+@given(
+    st.integers(0, 10**6),
+    st.sampled_from(["hull", "mesh"]),
+    st.sampled_from(["cube", "needle", "flat", "star"]),
+    st.sampled_from(["cube", "needle", "flat", "star"]),
+    st.sampled_from([0.0, 1e-12, 1e-6, 1.0, 1e8]),
+    st.sampled_from([0, 0, 1, 3]),
+    st.sampled_from([0.0, 1e6, 1e8]),
+)
+def test_gap_nearest_points_and_touching_are_those_of_the_exact_judge(seed, shape, form, other_form, gap, ratio, far):
+    rng = np.random.default_rng(seed)
+    sizes, positions, q = placed_at(rng, gap, ratio, far)
+    a, b = (
+        harness.Body(solid(rng, one), position, turn, size, shape=shape)
+        for one, position, turn, size in zip((form, other_form), positions, q, sizes, strict=True)
+    )
+    (first, parts), (second, other_parts) = judged(a, shape), judged(b, shape)
+    truth = hull_distance(first, second) if shape == "hull" else surface_distance(first, parts, second, other_parts)
+    truth.check(first, parts, second, other_parts)
+    found = harness.distance(a, b)
+    band = OF_SIZE * max(sizes) + OF_GAP * truth.gap
+    assert found.gap == pytest.approx(truth.gap, rel=0, abs=band)
+    # the points are written in the world, where coordinates have so many digits
+    digits = 1e-15 * np.abs(positions).max()
+    assert np.linalg.norm(np.subtract(*found.points)) == pytest.approx(found.gap, rel=0, abs=band + 4 * digits)
+    assert harness.touching(a, b) == (found.gap == 0.0)
+    assert harness.distance(b, a).gap == pytest.approx(truth.gap, rel=0, abs=band)
+
+
+@pytest.mark.parametrize("gap", [1e-12, 1e-6, 0.1, 1e8])
+@pytest.mark.parametrize("size", [1.0, 1000.0])
+def test_spheres_are_as_far_apart_as_their_centres_less_their_radii(gap, size):
+    one, other = (
+        harness.Body(None, (x, 0, 0), size=s, shape="sphere") for x, s in ((0, 1), (gap + 0.5 + size / 2, size))
+    )
+    found = harness.distance(one, other)
+    assert found.gap == pytest.approx(gap, rel=1e-15, abs=1e-12)
+    assert found.points[0].tolist() == [0.5, 0, 0]
+    assert not harness.touching(one, other)
+
+
+def test_a_point_in_both_is_told_of_spheres_that_overlap():
+    one, other = harness.Body(None, size=4, shape="sphere"), harness.Body(None, (1, 0, 0), size=1, shape="sphere")
+    found = harness.distance(one, other)
+    assert found.gap == 0.0
+    assert found.points.tolist() == [[1, 0, 0], [1, 0, 0]]
+
+
+def test_arrays_of_poses_give_the_answers_of_each_pose():
+    rng = np.random.default_rng(3)
+    positions, quaternions = rng.normal(size=(20, 3)), turns(rng, 20)
+    for shape in ("sphere", "hull", "mesh"):
+        one = harness.Body("cube.ply", shape=shape)
+        many = harness.Body("cube.ply", positions, quaternions, velocity=-positions, spin=(0, 0, 2), shape=shape)
+        each = [
+            harness.Body("cube.ply", x, q, velocity=-x, spin=(0, 0, 2), shape=shape)
+            for x, q in zip(positions, quaternions, strict=True)
+        ]
+        gaps, points = harness.distance(one, many)
+        assert gaps.tolist() == [harness.distance(one, body).gap for body in each]
+        assert points.tolist() == [harness.distance(one, body).points.tolist() for body in each]
+        assert harness.touching(one, many).tolist() == [harness.touching(one, body) for body in each]
+        assert harness.touching(one, many).tolist() == (gaps == 0).tolist()
+        times = harness.time_of_impact(one, many, until=2.0)
+        assert times.tolist() == [harness.time_of_impact(one, body, 2.0) for body in each]
+        assert (times[gaps == 0] == 0).all()
+
+
+def test_no_poses_give_no_answers():
+    none = harness.Body("cube.ply", position=np.empty((0, 3)))
+    gaps, points = harness.distance(none, harness.Body("cube.ply"))
+    assert gaps.shape == (0,)
+    assert points.shape == (0, 2, 3)
+
+
+@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+def test_the_time_of_impact_is_that_of_the_closed_form_from_near_and_from_far(shape):
+    width = 1.0 if shape == "sphere" else 1 / np.sqrt(3)
+    for way in (2.0, 1e8):
+        target = harness.Body("cube.ply", shape=shape)
+        shot = harness.Body("cube.ply", (way, 0, 0), velocity=(-1, 0, 0), shape=shape)
+        assert harness.time_of_impact(target, shot, np.inf) == pytest.approx(way - width, rel=1e-15, abs=2e-9)
+        assert harness.time_of_impact(target, shot, way - width - 1e-3) == np.inf
+
+
+def test_a_mesh_in_arrays_is_the_same_as_in_a_file():
+    cube = trimesh.creation.box()
+    assert harness.distance(harness.Body(cube), harness.Body("cube.ply", (0, 0, 2))).gap == pytest.approx(
+        2 - 1 / np.sqrt(3), rel=1e-12
+    )
+    assert make_mesh("cube", cube.vertices, cube.faces).digest == harness.Body(cube).mesh.digest
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"position": (1, 2)}, r"position has the shape \(2,\); it must be \(3,\), or \(n, 3\) for n poses"),
+        ({"position": [(0, 0, 0), (0, np.nan, 0)]}, "position is not finite, first in row 1"),
+        ({"position": "here"}, "position is no array of numbers"),
+        ({"quaternion": (0, 0, 0, 0)}, "quaternion is zero"),
+        ({"quaternion": (1, 0, 0)}, r"quaternion has the shape \(3,\)"),
+        ({"velocity": (np.inf, 0, 0)}, "velocity is not finite"),
+        ({"size": 0}, "size is 0; it must be above 0 and finite"),
+        ({"size": float("nan")}, "size is nan"),
+        ({"shape": "cube"}, "shape is 'cube'; it must be one of sphere, hull, mesh"),
+        ({"mesh": "no-such.ply"}, "there is no mesh"),
+        ({"mesh": None}, "a body of shape mesh needs a mesh"),
+        ({"mesh": 3}, "a mesh is a path or a trimesh.Trimesh, not a int"),
+        ({"position": np.zeros((3, 3)), "spin": np.zeros((2, 3))}, "arrays of 2 and 3 rows"),
+    ],
+)
+def test_nonsense_is_refused_in_a_sentence(given, said):
+    with pytest.raises(InputError, match=said):
+        harness.Body(**({"mesh": "cube.ply"} | given))
+
+
+def test_bodies_that_do_not_go_together_are_refused():
+    cube = harness.Body("cube.ply")
+    with pytest.raises(InputError, match="one body's shape is mesh, the other's hull"):
+        harness.touching(cube, harness.Body("cube.ply", shape="hull"))
+    with pytest.raises(InputError, match="one body has 2 poses, the other 3"):
+        harness.distance(*(harness.Body("cube.ply", np.zeros((count, 3))) for count in (2, 3)))
+    with pytest.raises(InputError, match="the second body is a str"):
+        harness.distance(cube, "cube.ply")
+    with pytest.raises(InputError, match="until is nan"):
+        harness.time_of_impact(cube, cube, np.nan)
+    with pytest.raises(InputError, match="tolerance is 0"):
+        harness.time_of_impact(cube, cube, 1.0, 0)
