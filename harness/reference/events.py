@@ -27,4 +27,6 @@ class Events(NamedTuple):
     @classmethod
     def of(cls, trace: Trace) -> Events:
         """Those of a run, in arrays of one layout whatever the run keeps them in: kernels are compiled for each."""
-        return cls(*(np.ascontiguousarray(part) for part in (trace.times, trace.bodies, trace.walls)))
+        return cls(
+            np.ascontiguousarray(trace.times), np.ascontiguousarray(trace.bodies), np.ascontiguousarray(trace.walls)
+        )
