@@ -25,6 +25,7 @@ class Trimesh:
     shapes: tuple[Shape, ...] = ("hull", "mesh")
     units = UNITS
     precision = "double"
+    solid: tuple[Shape, ...] = ("mesh",)
     _size_ratio = 1.0
 
     def tolerance(self, shape: Shape) -> float:
