@@ -12,10 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-import numpy as np
-
-from harness.arrays import Floats
-from harness.compare.exact import Point, determinant, dot, minus
+from harness.compare.exact import Point, Points, determinant, dot, minus
 
 
 @dataclass(frozen=True)
@@ -50,7 +47,12 @@ class Plane:
 
     def holds(self, first: Sequence[Point], second: Sequence[Point]) -> bool:
         """Whether the plane really parts the sets."""
-        return min(dot(self.normal, a) for a in first) > max(dot(self.normal, b) for b in second)
+        return self.between(first, second) > 0
+
+    def between(self, first: Sequence[Point], second: Sequence[Point]) -> int:
+        """How far the first set begins beyond the end of the second along the normal, times the normal's length."""
+        one, other = Points.of(first), Points.of(second)
+        return dot(self.normal, minus(one[one.lowest(self.normal)], other[other.highest(self.normal)]))
 
 
 def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane:
@@ -67,7 +69,7 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
     >>> meet([(0, 0, 0), (2, 0, 0)], [(1, 0, 0)])
     CommonPoint(first=((0, 2), (1, 2)), second=((0, 2), (0, 2)))
     """
-    rough, other_rough = _rough(first), _rough(second)
+    first, second = Points.of(first), Points.of(second)
     simplex = [(0, 0)]
     while True:
         corners = [minus(first[a], second[b]) for a, b in simplex]
@@ -79,22 +81,10 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
                 tuple((a, weight) for (a, _), weight in zip(simplex, weights, strict=True)),
                 tuple((b, weight) for (_, b), weight in zip(simplex, weights, strict=True)),
             )
-        # floats propose the next pair of points, which may be any that comes nearer; only where they find none are all
-        # looked at
-        along, reached = _rough([nearest])[0], dot(nearest, nearest)
-        least, most = int((rough @ along).argmin()), int((other_rough @ along).argmax())
-        if dot(nearest, minus(first[least], second[most])) * total >= reached:
-            least = min(range(len(first)), key=lambda a: dot(nearest, first[a]))
-            most = max(range(len(second)), key=lambda b: dot(nearest, second[b]))
-            if dot(nearest, minus(first[least], second[most])) * total >= reached:
-                return Plane(nearest)
+        least, most = first.lowest(nearest), second.highest(nearest)
+        if dot(nearest, minus(first[least], second[most])) * total >= dot(nearest, nearest):
+            return Plane(nearest)
         simplex.append((least, most))
-
-
-def _rough(points: Sequence[Point]) -> Floats:
-    """(n, 3): the points in floats, whatever their unit; integers may be too large for one."""
-    excess = max(0, max(abs(part).bit_length() for point in points for part in point) - 512)
-    return np.array([[float(part >> excess) for part in point] for point in points])
 
 
 def _nearest_to_origin(corners: Sequence[Point]) -> tuple[tuple[int, ...], list[int], int]:
