@@ -35,8 +35,8 @@ class PyBullet:
     own_hulls_tolerance = 1e-5
 
     def tolerance(self, shape: Shape) -> float:
-        """Spheres to rounding; hull vertices are quantised to about 1e-4 of the extent."""
-        return 1e-15 if shape == "sphere" else 1e-4
+        """Spheres to rounding; each coordinate of a hull is quantised to about 1e-4 of the extent."""
+        return 1e-15 if shape == "sphere" else 2e-4
 
     @property
     def own_hulls(self) -> dict[float, Hull]:

@@ -9,7 +9,7 @@ from itertools import combinations
 from harness.arrays import Pairs
 from harness.compare.budget import Budget
 from harness.compare.group import Group, load
-from harness.compare.isolated import ANSWER_SECONDS
+from harness.compare.isolated import ANSWER_SECONDS, preload
 from harness.compare.outcome import Case, Comparison, Failure
 from harness.compare.pair_audit import PairAudit
 from harness.compare.poses import Pose, PoseSet
@@ -56,6 +56,8 @@ def compare_all(
     budget : ends it early, and keeps what was left out
     """
     budget = budget or Budget()
+    for name in names:
+        preload(name)
     whole: Found = {pair: Comparison() for pair in combinations(names, 2)}
     for pose_set in pose_sets:
         scene = pose_set.scene

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import chain, combinations
+from typing import Any
 
 from harness.compare.exact import Point, Points, determinant, dot, minus
 
@@ -89,7 +90,8 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
 
 def _nearest_to_origin(corners: Sequence[Point]) -> tuple[tuple[int, ...], list[int], int]:
     """The corners whose simplex holds the point nearest to the origin inside, its weights, and their sum."""
-    for kept, weights, total in _inner_points(corners):
+    proposed = _proposed(corners)
+    for kept, weights, total in chain(_inner_point(corners, proposed), _inner_points(corners)):
         nearest = _mixed(tuple(zip(kept, weights, strict=True)), corners)
         squared = dot(nearest, nearest)
         if all(dot(nearest, corner) * total >= squared for corner in corners):
@@ -101,10 +103,34 @@ def _inner_points(corners: Sequence[Point]) -> Iterator[tuple[tuple[int, ...], l
     """Of every set of independent corners the point of its span nearest to the origin, where it lies inside."""
     for size in range(1, len(corners) + 1):
         for kept in combinations(range(len(corners)), size):
-            weights = _weights([corners[place] for place in kept])
-            total = sum(weights)
-            if total > 0 and min(weights) > 0:
-                yield kept, weights, total
+            yield from _inner_point(corners, kept)
+
+
+def _inner_point(corners: Sequence[Point], kept: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], list[int], int]]:
+    """Of some independent corners the point of their span nearest to the origin, if it lies inside."""
+    weights = _weights([corners[place] for place in kept])
+    total = sum(weights)
+    if total > 0 and min(weights) > 0:
+        yield kept, weights, total
+
+
+def _proposed(corners: Sequence[Point]) -> tuple[int, ...]:
+    """Which corners it probably is, by floats: they are tried first, and what floats get wrong costs time only."""
+    if len(corners) == 1:
+        return (0,)
+    largest = max(abs(part) for corner in corners for part in corner)
+    excess = max(0, largest.bit_length() - 60)
+    # the arithmetic is the same; with floats it is that of numbers near 1
+    near: Any = [tuple(float(part >> excess) * 2.0**-60 for part in corner) for corner in corners]
+    best: tuple[int, ...] = (0,)
+    least = float("inf")
+    for kept, weights, total in _inner_points(near):
+        nearest = _mixed(tuple(zip(kept, weights, strict=True)), near)
+        squared = dot(nearest, nearest)
+        # the nearest of all inner points: that of the whole hull, for the hull holds every one of them
+        if (distance := squared / total**2) < least:
+            best, least = kept, distance
+    return best
 
 
 def _weights(corners: Sequence[Point]) -> list[int]:

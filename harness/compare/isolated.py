@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from types import TracebackType
@@ -124,6 +125,14 @@ class Isolated:
         if self._child is not None:
             self._child.end()
             self._child = None
+
+
+def preload(name: str) -> None:
+    """Import what stands behind a name, where it comes with this program: then the processes of it need not, each."""
+    backend = name.partition("/")[0]
+    if registry.ours(backend):
+        with suppress(InputError):
+            registry.create(backend)
 
 
 def _create(name: str, shape: Shape) -> Backend:

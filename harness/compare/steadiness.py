@@ -13,8 +13,10 @@ import numpy as np
 
 from harness.arrays import Pairs
 from harness.compare.budget import Budget
+from harness.compare.group import LARGEST_TOLERANCE
 from harness.compare.isolated import Isolated, UnusableError
 from harness.compare.poses import Pose
+from harness.compare.truths import Truths
 from harness.scene.scene import Scene
 
 _SEED = 259
@@ -48,7 +50,7 @@ class Unsteady:
 def unsteady(
     asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Pairs], budget: Budget
 ) -> list[Unsteady]:
-    """Ask every pose that was answered again.
+    """Ask every pose that was answered again. What is nearer than the method claims to know may change.
 
     Parameters
     ----------
@@ -65,7 +67,7 @@ def unsteady(
         again = asked.pairs(poses[place])
         if isinstance(again, str):
             continue  # the failure itself has been told, or will be
-        differing = _first_difference(answers[place], again)
+        differing = _difference(asked.facts.tolerance, scene, poses[place], answers[place], again)
         if differing is not None:
             random = _is_random(asked, name, scene, poses[place])
             found.append(Unsteady(poses[place].name, place + 1, differing, random))
@@ -95,8 +97,12 @@ def _key(answer: Pairs | str) -> bytes | str:
     return answer if isinstance(answer, str) else answer.tobytes()
 
 
-def _first_difference(answer: Pairs, other: Pairs) -> tuple[int, int] | None:
+def _difference(tolerance: float, scene: Scene, pose: Pose, answer: Pairs, other: Pairs) -> tuple[int, int] | None:
+    """The first pair that only one answer has, and that is farther from touching than the tolerance."""
     if np.array_equal(answer, other):
         return None
-    i, j = min(set(map(tuple, answer.tolist())) ^ set(map(tuple, other.tolist())))
-    return i, j
+    truths = Truths(scene, pose)
+    for i, j in sorted(set(map(tuple, answer.tolist())) ^ set(map(tuple, other.tolist()))):
+        if abs(truths.judgement((i, j)).gap) > min(tolerance, LARGEST_TOLERANCE) * scene.bodies.sizes[[i, j]].max():
+            return i, j
+    return None
