@@ -14,10 +14,16 @@ from harness.vocabulary import Shape
 
 # with coal's own 1e-6 more verdicts near touching are wrong
 _GJK_TOLERANCE = 1e-12
+# coal takes spheres up to 1e-12 apart for touching; of hulls a margin changes nothing but the time, by 1.05 to 1.25.
+_SPHERES_MARGIN = -1e-12
 
 
 class Coal:
-    """Hulls and spheres go through the tree at once; meshes where the tree sees their bounding spheres touch."""
+    """Hulls and spheres go through the tree at once; meshes where the tree sees their bounding spheres touch.
+
+    It is asked whether, not where: without contacts (which are on unless one says so) it gives the same answers in .75
+    to .97 of the time, measured in interleaved calls.
+    """
 
     name = "coal"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
@@ -30,7 +36,8 @@ class Coal:
 
     def load(self, scene: Scene) -> None:
         self._request = coal.CollisionRequest()
-        self._request.gjk_tolerance = _GJK_TOLERANCE
+        self._request.gjk_tolerance, self._request.enable_contact = _GJK_TOLERANCE, False
+        self._margin = _SPHERES_MARGIN if scene.shape == "sphere" else 0.0
         self._unit = unit_of(scene.bodies.sizes)
         sizes = (scene.bodies.sizes / self._unit).tolist()
         count = len(sizes)
@@ -58,8 +65,9 @@ class Coal:
         _place(self._objects, places, turns)
         self._tree.update()
         callback = coal.CollisionCallBackDefault()
-        callback.data.request.num_max_contacts = self._every_pair
-        callback.data.request.gjk_tolerance = _GJK_TOLERANCE
+        request = callback.data.request
+        request.num_max_contacts, request.gjk_tolerance = self._every_pair, _GJK_TOLERANCE
+        request.enable_contact, request.security_margin = False, self._margin
         self._tree.collide(callback)
         found = callback.data.result.getContacts()
         touching = {tuple(sorted((int(one.o1.cost_density), int(one.o2.cost_density)))) for one in found}

@@ -9,8 +9,7 @@ import fcl
 import numpy as np
 
 from harness.arrays import Floats, Pairs
-from harness.backends.fcl_objects import FclObjects
-from harness.narrowphase.units import UNITS
+from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, FclObjects, size_ratio
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
@@ -25,12 +24,16 @@ class Fcl:
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
     units = UNITS
     precision = "double"
+    _size_ratio = 1.0
 
     def tolerance(self, shape: Shape) -> float:
-        """Measured against exact rationals; the rare worst case for hulls."""
+        """Measured against exact rationals, the rare worst case for hulls; once loaded, for the sizes of the scene."""
+        if shape == "hull" and self._size_ratio > MOST_UNLIKE:
+            return MISSED_BY_UNLIKE
         return {"sphere": 1e-15, "hull": 1e-11, "mesh": 1e-14}[shape]
 
     def load(self, scene: Scene) -> None:
+        self._size_ratio = size_ratio(scene.bodies.sizes)
         self._tests = 0
         self._request = fcl.CollisionRequest()
         self._bodies = FclObjects(scene)

@@ -63,6 +63,14 @@ def approximations(backend: Backend) -> Mapping[Shape, str]:
     return replaced
 
 
+def contained_is_touching(backend: Backend, shape: Shape) -> bool:
+    """Whether the backend says that for a shape that is a surface it takes one body inside another for a touching pair.
+
+    It says so by `solid`, the shapes of which it does; one that replaces a mesh by its hull need not say it again.
+    """
+    return shape in getattr(backend, "solid", ()) or shape in approximations(backend)
+
+
 def own_hulls(backend: Backend) -> Mapping[float, Hull]:
     """The hulls that a loaded backend holds in place of the scene's, by the size of a body, both m; else empty.
 

@@ -11,8 +11,9 @@ from scipy.spatial.transform import Rotation
 from trimesh.collision import CollisionManager
 
 from harness.arrays import Floats, Pairs
+from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, fcl_unit, size_ratio
 from harness.errors import InputError
-from harness.narrowphase.units import UNITS, unit_of
+from harness.scene.mesh import has_area
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
@@ -24,20 +25,26 @@ class Trimesh:
     shapes: tuple[Shape, ...] = ("hull", "mesh")
     units = UNITS
     precision = "double"
+    solid: tuple[Shape, ...] = ("mesh",)
+    _size_ratio = 1.0
 
     def tolerance(self, shape: Shape) -> float:
-        """FCL's own: the rare worst case for hulls, rounding for meshes."""
+        """FCL's own, since that is what it asks: the rare worst case for hulls, rounding for meshes."""
+        if shape == "hull" and self._size_ratio > MOST_UNLIKE:
+            return MISSED_BY_UNLIKE
         return {"hull": 1e-11, "mesh": 1e-14}.get(shape, 0.0)
 
     def load(self, scene: Scene) -> None:
         """Raises InputError for a hull that trimesh does not take for convex: it would hold its surface only."""
-        self._unit = unit_of(scene.bodies.sizes)
+        self._unit = fcl_unit(scene.bodies.sizes)
+        self._size_ratio = size_ratio(scene.bodies.sizes)
         self._manager = CollisionManager()
         solids: dict[float, trimesh.Trimesh] = {}
         for body, size in enumerate(scene.bodies.sizes.tolist()):
             if size not in solids:
                 surface = scene.solid_of(size)
-                solids[size] = trimesh.Trimesh(surface.vertices / self._unit, surface.faces, process=False)
+                faces = surface.faces[has_area(*surface)] if scene.shape == "mesh" else surface.faces
+                solids[size] = trimesh.Trimesh(surface.vertices / self._unit, faces, process=False)
                 if scene.shape == "hull" and not solids[size].is_convex:
                     raise InputError("it does not take this hull for convex, and would hold its surface only")
             self._manager.add_object(body, solids[size])

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from harness.compare.document import Reduced
-    from harness.compare.outcome import Case, Comparison
+    from harness.compare.outcome import Case, Comparison, Failure
     from harness.scene.mesh import Mesh
 
 DATABASE = "results/results.db"
@@ -33,6 +33,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         help="two or more, such as fcl,fcl/grid,pybullet: a method of this program as BACKEND/ALGORITHM, a backend "
         "alone for its own pipeline; those of the experiment where it names several, else fcl,pybullet",
+    )
+    parser.add_argument(
+        "--budget", metavar="SECONDS", type=_seconds, help="stop asking after so long, and say what was left out"
+    )
+    parser.add_argument(
+        "--every", metavar="N", type=_count, default=1, help="ask about every N-th pose only, and say so"
     )
     add_override_argument(parser)
     parser.add_argument(
@@ -48,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     import sys
 
     from harness.cli.crosscheck import SAVED, SHOWN, WHOLE, backends_of, cross_check, kept, key_of, reductions
+    from harness.compare.budget import Budget
     from harness.compare.document import document
     from harness.compare.outcome import Comparison
     from harness.runner.preparation import prepare
@@ -62,24 +69,28 @@ def run(arguments: argparse.Namespace) -> int:
     whole = Comparison()
     rows: list[tuple[Reduced, bool]] = []
     keep = []
+    budget = Budget(arguments.budget, arguments.every)
+    if budget.every > 1:
+        budget.left_out.append(f"only every {budget.every}th pose of each scene was asked about")
     for experiment in experiments:
         names, lacking = backends_of(experiment, chosen)
         whole.unsupported += lacking
         progress(f"{experiment.name}: {', '.join(names)}")
-        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress):
+        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget):
             small = reductions(found, meshes, SAVED if arguments.save else SHOWN)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
             keep.append(
-                (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE), kept(experiment, found, small))
+                (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE, budget), kept(experiment, found, small))
             )
             whole.add(found)
+    whole.left_out += budget.left_out
     # as `document` has them: what one backend loses first, then what both share
     ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
     files = _saved(ordered, meshes, arguments.save) if arguments.save else {}
     if arguments.json:
         json.dump(document(whole, ordered, files), sys.stdout, allow_nan=False)
         print()
-        for line in whole.unsupported:
+        for line in whole.unsupported + whole.left_out:
             progress(line)
     else:
         _print(whole)
@@ -179,10 +190,38 @@ def _print(found: Comparison) -> None:
         print(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
     for line in found.unsupported:
         print(line)
+    for line in found.left_out:
+        print(f"left out: {line}")
     for case in found.cases + found.shared:
         print(_sentence(case))
     for failure in found.failures:
-        print(f"{failure.backend} failed at {failure.pose} (call {failure.query_index}): {failure.reason}")
+        print(_failed(failure))
+
+
+def _failed(failure: Failure) -> str:
+    where = f"at {failure.pose} (call {failure.query_index})"
+    if failure.kind == "claim":
+        return f"{failure.backend} is wrong: {failure.reason}"
+    if failure.kind == "crashed":
+        return f"{failure.backend} failed {where}: {failure.reason}"
+    return f"{failure.backend} is wrong {where}: {failure.reason}"
+
+
+def _seconds(text: str) -> float:
+    number = float(text)
+    if not number > 0.0:
+        raise ValueError
+    return number
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise ValueError
+    return number
+
+
+_seconds.__name__, _count.__name__ = "number of seconds", "number"  # argparse names them in its messages
 
 
 def _sentence(case: Case) -> str:

@@ -11,13 +11,13 @@ import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from harness.backends.registry import packages
 from harness.backends.statement import missing
-from harness.compare.comparison import compare
+from harness.compare.budget import Budget
+from harness.compare.comparison import compare_all
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.free_running import run_both
 from harness.compare.hard_poses import hard_poses
@@ -96,12 +96,18 @@ def cross_check(
     names: tuple[str, ...],
     extent: Extent,
     progress: Callable[[str], None] = lambda line: None,
+    budget: Budget | None = None,
 ) -> Iterator[tuple[tuple[str, str], Comparison]]:
-    """Every two backends with what was found of them."""
-    for pair in combinations(names, 2):
-        found = compare(_pose_sets(experiment, meshes, extent), pair, progress)
+    """Every two backends with what was found of them; each was asked once a pose for all of them."""
+    budget = budget or Budget()
+    compared = compare_all(_pose_sets(experiment, meshes, extent), names, progress, budget=budget)
+    for pair, found in compared.items():
         free = next((point for point in experiment.points if point.motion.response != "none"), None)
         if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
+            if budget.spent:
+                budget.left_out.append(f"{pair[0]} and {pair[1]} in flight: not run, the time was spent")
+                yield pair, found
+                continue
             motion = free.motion
             frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
             progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
@@ -129,10 +135,13 @@ def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict
     }
 
 
-def key_of(experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent) -> str:
+def key_of(
+    experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent, budget: Budget | None = None
+) -> str:
     """Of two comparisons with the same key the second would find nothing new."""
     points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
-    content = json.dumps([points, pair, repr(extent), package_versions(packages())])
+    limits = [budget.seconds, budget.every] if budget and (budget.seconds or budget.every > 1) else []
+    content = json.dumps([points, pair, repr(extent), package_versions(packages()), *limits])
     return hashlib.sha256(content.encode()).hexdigest()
 
 

@@ -148,27 +148,30 @@ def _compare(
     """
     import sys
 
-    wanted = [experiment for experiment in experiments if experiment.measure.compare]
-    if not wanted:
+    crosschecked = [experiment for experiment in experiments if experiment.measure.compare]
+    if not crosschecked:
         return []
     from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, kept, key_of, reductions
 
     done = set() if arguments.fresh else database.history.compared()
     lines = []
-    for experiment in wanted:
+    for experiment in crosschecked:
         names, _ = backends_of(experiment)
         pairs = [(a, b) for place, a in enumerate(names) for b in names[place + 1 :]]
-        for pair in pairs:
-            key = key_of(experiment, meshes, pair, SWEPT)
-            if key in done:
+        keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs}
+        wanted = {pair for pair, key in keys.items() if key not in done}
+        if not wanted:
+            continue
+        asked = tuple(name for name in names if any(name in pair for pair in wanted))
+        if not arguments.quiet:
+            print(f"{experiment.name}: comparing {', '.join(asked)}", file=sys.stderr)
+        for pair, found in cross_check(experiment, meshes, asked, SWEPT):
+            if pair not in wanted:
                 continue
-            if not arguments.quiet:
-                print(f"{experiment.name}: comparing {' and '.join(pair)}", file=sys.stderr)
-            for _, found in cross_check(experiment, meshes, pair, SWEPT):
-                rows = reductions(found, meshes, SHOWN)
-                database.add_comparison(command, experiment.name, pair, key, kept(experiment, found, rows))
-                real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
-                lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
+            rows = reductions(found, meshes, SHOWN)
+            database.add_comparison(command, experiment.name, pair, keys[pair], kept(experiment, found, rows))
+            real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
+            lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
     return lines
 
 

@@ -35,8 +35,7 @@ class Judgement:
 
 def distance_along(plane: Plane, first: Sequence[Point], second: Sequence[Point], unit: Fraction) -> float:
     """m, how far two sets are apart along the normal of a plane; negative if they overlap."""
-    normal = plane.normal
-    between = min(dot(normal, a) for a in first) - max(dot(normal, b) for b in second)
+    normal, between = plane.normal, plane.between(first, second)
     squared = float(Fraction(between * between, dot(normal, normal)) * unit * unit)
     return sqrt(squared) if between >= 0 else -sqrt(squared)
 

@@ -1,22 +1,27 @@
-"""Two backends at the same poses: where their verdicts differ, whose is wrong, and whether that has an explanation."""
+"""Methods at the same poses: where their verdicts differ, whose is wrong, and whether that has an explanation."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
-from dataclasses import replace
 from itertools import combinations
 
 from harness.arrays import Pairs
-from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError
+from harness.compare.budget import Budget
+from harness.compare.group import Group, load
+from harness.compare.isolated import ANSWER_SECONDS, preload
 from harness.compare.outcome import Case, Comparison, Failure
 from harness.compare.pair_audit import PairAudit
 from harness.compare.poses import Pose, PoseSet
+from harness.compare.steadiness import unsteady
 from harness.compare.tally import NamePair, Tally
+from harness.compare.truths import Truths
 from harness.scene.scene import Scene
 
 MOST_FAILURES = 5
 """A backend that has crashed or hung so often at the poses of one scene is not asked about the rest of them."""
+
+Found = dict[NamePair, Comparison]
 
 
 def compare(
@@ -24,75 +29,166 @@ def compare(
     names: Sequence[str],
     progress: Callable[[str], None] = lambda line: None,
     timeout: float = ANSWER_SECONDS,
+    budget: Budget | None = None,
 ) -> Comparison:
-    """Hold every two of some backends against each other.
+    """Hold every two of some methods against each other, as `compare_all`, and add up what was found."""
+    whole = Comparison()
+    for found in compare_all(pose_sets, names, progress, timeout, budget).values():
+        whole.add(found)
+    return whole
+
+
+def compare_all(
+    pose_sets: Iterable[PoseSet],
+    names: Sequence[str],
+    progress: Callable[[str], None] = lambda line: None,
+    timeout: float = ANSWER_SECONDS,
+    budget: Budget | None = None,
+) -> Found:
+    """Hold every two of some methods against each other; each is asked once a pose, and once more in another order.
 
     Parameters
     ----------
     pose_sets : the scenes and the poses to ask about
-    names : of two backends at least
+    names : of two methods at least
     progress : told what is being done
     timeout : s for an answer at one pose
+    budget : ends it early, and keeps what was left out
     """
-    found = Comparison()
+    budget = budget or Budget()
+    for name in names:
+        preload(name)
+    whole: Found = {pair: Comparison() for pair in combinations(names, 2)}
     for pose_set in pose_sets:
-        for first, second in combinations(names, 2):
-            scene = pose_set.scene
-            progress(f"{first} and {second}: {len(scene.bodies)} bodies, shape {scene.shape}")
-            found.add(_compare_two(pose_set, (first, second), timeout))
-    return found
+        scene = pose_set.scene
+        what = f"{len(scene.bodies)} bodies, shape {scene.shape}"
+        if budget.spent:
+            budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.seconds:g} s were spent")
+            continue
+        progress(f"{', '.join(names)}: {what}")
+        for pair, found in _compare_at(pose_set, names, timeout, budget).items():
+            whole[pair].add(found)
+    return whole
 
 
 def disagreements(scene: Scene, pose: Pose, names: NamePair) -> list[Case]:
     """The real disagreements of two backends at one pose, and the errors that they share, each asked once, afresh."""
-    found = _compare_two(PoseSet(scene, lambda held: (pose,), hard=True), names, ANSWER_SECONDS)
+    pose_set = PoseSet(scene, lambda held: (pose,), hard=True)
+    found = _compare_at(pose_set, names, ANSWER_SECONDS, Budget(), again=False)[names]
     return found.cases + found.shared
 
 
-def _compare_two(pose_set: PoseSet, names: NamePair, timeout: float) -> Comparison:
+def _compare_at(
+    pose_set: PoseSet, names: Sequence[str], timeout: float, budget: Budget, *, again: bool = True
+) -> Found:
+    shape = pose_set.scene.shape
+    whole: Found = {pair: Comparison([Tally(pair, shape)]) for pair in combinations(names, 2)}
     with ExitStack() as processes:
-        try:
-            scene, asked = _loaded(pose_set.scene, names, processes, timeout)
-        except UnusableError as error:
-            line = f"{names[0]} and {names[1]} are not comparable on shape {pose_set.scene.shape}: {error}"
-            return Comparison([Tally(names, pose_set.scene.shape)], unsupported=[line])
-        audit = PairAudit(names, scene, (asked[0].facts, asked[1].facts), flown=not pose_set.hard)
-        failures: list[Failure] = []
-        unsupported: list[str] = []
-        for query_index, pose in enumerate(pose_set.poses(scene), 1):
-            answers: list[Pairs] = []
-            for name, backend in zip(names, asked, strict=True):
-                answer = backend.pairs(pose)
-                if isinstance(answer, str):
-                    failures.append(Failure(names, name, pose.name, query_index, answer))
-                else:
-                    answers.append(answer)
-            exhausted = [name for name in names if sum(f.backend == name for f in failures) >= MOST_FAILURES]
-            if exhausted:
-                unsupported.append(
-                    f"{exhausted[0]} failed at {MOST_FAILURES} poses; from {pose.name} on it is not asked"
-                )
+        loaded = load(pose_set.scene, names, processes, timeout)
+        compared = {pair for group in loaded.groups for pair in group.pairs}
+        for pair, found in whole.items():
+            for name in [name for name in pair if name in loaded.unusable and pair not in compared][:1]:
+                line = f"{pair[0]} and {pair[1]} are not comparable on shape {shape}: {name}: {loaded.unusable[name]}"
+                found.unsupported.append(line)
+        for name, claim in loaded.claims.items():
+            pair = next(pair for pair in whole if name in pair)
+            whole[pair].failures.append(Failure(pair, name, "loading", 0, claim, kind="claim"))
+        for group in loaded.groups:
+            for pair, found in _Questions(pose_set, group, budget, again=again).ask().items():
+                whole[pair].add(found)
+    return whole
+
+
+class _Questions:
+    """A group of methods asked at the poses of one scene."""
+
+    def __init__(self, pose_set: PoseSet, group: Group, budget: Budget, *, again: bool) -> None:
+        self._group, self._budget, self._again = group, budget, again
+        self._poses = tuple(pose_set.poses(group.scene))
+        self._hard = pose_set.hard
+        facts = {name: asked.facts for name, asked in group.asked.items()}
+        self._audits = {
+            pair: PairAudit(pair, group.scene, (facts[pair[0]], facts[pair[1]]), flown=not pose_set.hard)
+            for pair in group.pairs
+        }
+        # in their order, those that some pair needs
+        self._names = [name for name in group.asked if any(name in pair for pair in group.pairs)]
+        self._answers: dict[str, dict[int, Pairs]] = {name: {} for name in self._names}
+        self._failures: dict[str, list[Failure]] = {name: [] for name in self._names}
+        self._exhausted: dict[str, str] = {}
+
+    def ask(self) -> Found:
+        """Every pose, every method."""
+        for place in range(0, len(self._poses), self._budget.every):
+            if self._budget.spent or not self._still_asked():
                 break
-            if len(answers) == 2:
-                audit.add(pose, query_index, answers)
-    found = audit.found
-    found.failures, found.unsupported = failures, unsupported
-    return found
+            self._ask_at(place)
+        else:
+            place = len(self._poses)
+        if self._budget.spent and place < len(self._poses):
+            scene = self._group.scene
+            self._budget.left_out.append(
+                f"{len(scene.bodies)} bodies, shape {scene.shape}{_sizes(scene)}: {len(self._poses) - place} of "
+                f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.seconds:g} s were spent"
+            )
+        if self._again:
+            self._ask_again()
+        return self._found()
+
+    def _still_asked(self) -> list[NamePair]:
+        return [pair for pair in self._audits if not set(pair) & set(self._exhausted)]
+
+    def _ask_at(self, place: int) -> None:
+        pose, pairs = self._poses[place], self._still_asked()
+        truths = Truths(self._group.scene, pose)
+        for name in self._names:
+            if not any(name in pair for pair in pairs):
+                continue
+            answer = self._group.asked[name].pairs(pose)
+            if isinstance(answer, str):
+                self._failures[name].append(Failure(self._pair_of(name), name, pose.name, place + 1, answer))
+                if len(self._failures[name]) >= MOST_FAILURES:
+                    self._exhausted[name] = (
+                        f"{name} failed at {MOST_FAILURES} poses; from {pose.name} on it is not asked"
+                    )
+            else:
+                self._answers[name][place] = answer
+        for pair in pairs:
+            answers = [self._answers[name].get(place) for name in pair]
+            if answers[0] is not None and answers[1] is not None:
+                self._audits[pair].add(truths, place + 1, (answers[0], answers[1]))
+
+    def _ask_again(self) -> None:
+        for name in self._names:
+            for one in unsteady(
+                self._group.asked[name], name, self._group.scene, self._poses, self._answers[name], self._budget
+            ):
+                failure = Failure(
+                    self._pair_of(name),
+                    name,
+                    one.pose,
+                    one.query_index,
+                    one.reason,
+                    kind="random" if one.random else "depends on order",
+                    bodies=one.bodies,
+                )
+                self._failures[name].append(failure)
+
+    def _pair_of(self, name: str) -> NamePair:
+        """The pair under which a failure of a method is kept: one, that it be told once."""
+        return next(pair for pair in self._audits if name in pair)
+
+    def _found(self) -> Found:
+        found = {pair: audit.found for pair, audit in self._audits.items()}
+        for name, failures in self._failures.items():
+            found[self._pair_of(name)].failures += failures
+        for name, line in self._exhausted.items():
+            for pair in self._audits:
+                if name in pair:
+                    found[pair].unsupported.append(line)
+        return found
 
 
-def _loaded(scene: Scene, names: NamePair, processes: ExitStack, timeout: float) -> tuple[Scene, list[Isolated]]:
-    """Both backends with the scene; where one of them holds hulls of its own, the other is given those."""
-    asked = [_enter(name, scene, processes, timeout) for name in names]
-    holders = [place for place in (0, 1) if asked[place].facts.hulls]
-    if len(holders) == 1:
-        other = 1 - holders[0]
-        scene = replace(scene, hulls=asked[holders[0]].facts.hulls)
-        asked[other] = _enter(names[other], scene, processes, timeout)
-    return scene, asked
-
-
-def _enter(name: str, scene: Scene, processes: ExitStack, timeout: float) -> Isolated:
-    try:
-        return processes.enter_context(Isolated(name, scene, timeout))
-    except UnusableError as error:
-        raise UnusableError(f"{name}: {error}") from None
+def _sizes(scene: Scene) -> str:
+    sizes = scene.bodies.sizes
+    return f", sizes {sizes.min():g} to {sizes.max():g} m" if len(sizes) and sizes.min() != sizes.max() else ""

@@ -10,12 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import chain, combinations
+from typing import Any
 
-import numpy as np
-
-from harness.arrays import Floats
-from harness.compare.exact import Point, determinant, dot, minus
+from harness.compare.exact import Point, Points, determinant, dot, minus
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,12 @@ class Plane:
 
     def holds(self, first: Sequence[Point], second: Sequence[Point]) -> bool:
         """Whether the plane really parts the sets."""
-        return min(dot(self.normal, a) for a in first) > max(dot(self.normal, b) for b in second)
+        return self.between(first, second) > 0
+
+    def between(self, first: Sequence[Point], second: Sequence[Point]) -> int:
+        """How far the first set begins beyond the end of the second along the normal, times the normal's length."""
+        one, other = Points.of(first), Points.of(second)
+        return dot(self.normal, minus(one[one.lowest(self.normal)], other[other.highest(self.normal)]))
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
 
 def connect(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Connection:
     """A common point of the hulls of two sets, or their shortest connection; parameters as for `meet`."""
-    rough, other_rough = _rough(first), _rough(second)
+    first, second = Points.of(first), Points.of(second)
     simplex = [(0, 0)]
     while True:
         corners = [minus(first[a], second[b]) for a, b in simplex]
@@ -98,27 +101,16 @@ def connect(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Co
         end, other_end = (tuple((pair[k], w) for pair, w in zip(simplex, weights, strict=True)) for k in (0, 1))
         if nearest == (0, 0, 0):
             return CommonPoint(end, other_end)
-        # floats propose the next pair of points, which may be any that comes nearer; only where they find none are all
-        # looked at
-        along, reached = _rough([nearest])[0], dot(nearest, nearest)
-        least, most = int((rough @ along).argmin()), int((other_rough @ along).argmax())
-        if dot(nearest, minus(first[least], second[most])) * total >= reached:
-            least = min(range(len(first)), key=lambda a: dot(nearest, first[a]))
-            most = max(range(len(second)), key=lambda b: dot(nearest, second[b]))
-            if dot(nearest, minus(first[least], second[most])) * total >= reached:
-                return Connection(end, other_end, Plane(nearest))
+        least, most = first.lowest(nearest), second.highest(nearest)
+        if dot(nearest, minus(first[least], second[most])) * total >= dot(nearest, nearest):
+            return Connection(end, other_end, Plane(nearest))
         simplex.append((least, most))
-
-
-def _rough(points: Sequence[Point]) -> Floats:
-    """(n, 3): the points in floats, whatever their unit; integers may be too large for one."""
-    excess = max(0, max(abs(part).bit_length() for point in points for part in point) - 512)
-    return np.array([[float(part >> excess) for part in point] for point in points])
 
 
 def _nearest_to_origin(corners: Sequence[Point]) -> tuple[tuple[int, ...], list[int], int]:
     """The corners whose simplex holds the point nearest to the origin inside, its weights, and their sum."""
-    for kept, weights, total in _inner_points(corners):
+    proposed = _proposed(corners)
+    for kept, weights, total in chain(_inner_point(corners, proposed), _inner_points(corners)):
         nearest = _mixed(tuple(zip(kept, weights, strict=True)), corners)
         squared = dot(nearest, nearest)
         if all(dot(nearest, corner) * total >= squared for corner in corners):
@@ -130,10 +122,34 @@ def _inner_points(corners: Sequence[Point]) -> Iterator[tuple[tuple[int, ...], l
     """Of every set of independent corners the point of its span nearest to the origin, where it lies inside."""
     for size in range(1, len(corners) + 1):
         for kept in combinations(range(len(corners)), size):
-            weights = _weights([corners[place] for place in kept])
-            total = sum(weights)
-            if total > 0 and min(weights) > 0:
-                yield kept, weights, total
+            yield from _inner_point(corners, kept)
+
+
+def _inner_point(corners: Sequence[Point], kept: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], list[int], int]]:
+    """Of some independent corners the point of their span nearest to the origin, if it lies inside."""
+    weights = _weights([corners[place] for place in kept])
+    total = sum(weights)
+    if total > 0 and min(weights) > 0:
+        yield kept, weights, total
+
+
+def _proposed(corners: Sequence[Point]) -> tuple[int, ...]:
+    """Which corners it probably is, by floats: they are tried first, and what floats get wrong costs time only."""
+    if len(corners) == 1:
+        return (0,)
+    largest = max(abs(part) for corner in corners for part in corner)
+    excess = max(0, largest.bit_length() - 60)
+    # the arithmetic is the same; with floats it is that of numbers near 1
+    near: Any = [tuple(float(part >> excess) * 2.0**-60 for part in corner) for corner in corners]
+    best: tuple[int, ...] = (0,)
+    least = float("inf")
+    for kept, weights, total in _inner_points(near):
+        nearest = _mixed(tuple(zip(kept, weights, strict=True)), near)
+        squared = dot(nearest, nearest)
+        # the nearest of all inner points: that of the whole hull, for the hull holds every one of them
+        if (distance := squared / total**2) < least:
+            best, least = kept, distance
+    return best
 
 
 def _weights(corners: Sequence[Point]) -> list[int]:

@@ -77,6 +77,7 @@ def document(found: Comparison, rows: list[Reduced], files: dict[int, str]) -> d
         "gaps": [_gaps(histogram) for histogram in found.gaps],
         "flights": [asdict(flight) for flight in found.flights],
         "unsupported": found.unsupported,
+        "left_out": found.left_out,
     }
 
 
@@ -97,13 +98,14 @@ def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
 
 
 def failure_row(failure: Failure) -> dict[str, Any]:
-    """A crash has no bodies, no gap and no proof but its reason."""
+    """A crash has no bodies; neither it nor a verdict that changes has a gap, or a proof but its reason."""
+    where = {"pose": failure.pose, "call": failure.query_index}
     return {
         "backends": list(failure.backends),
         "wrong": failure.backend,
-        "bodies": [],
+        "bodies": list(failure.bodies),
         "gap": None,
-        "certificate": {"kind": "crashed", "pose": failure.pose, "call": failure.query_index, "reason": failure.reason},
+        "certificate": {"kind": failure.kind, **where, "reason": failure.reason},
         "file": None,
     }
 

@@ -3,13 +3,17 @@
 Every float is a fraction. A pose turns the float vertices by the exact rotation of its float quaternion, divided by its
 exact squared norm, and shifts them by its float position. Of a pair of bodies all coordinates are then multiples of one
 unit 1 / (2^k |q1|² |q2|²), so that they can be held as Python integers, which are exact and need no common factors.
+
+Of a body of many vertices only few decide. Floats beside the integers, whose error is bounded, leave out those that
+cannot be the farthest in a direction; the others alone are made exact, and compared exactly.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TypeAlias, overload
 
 import numpy as np
 
@@ -17,6 +21,73 @@ from harness.arrays import Floats
 
 Point: TypeAlias = tuple[int, int, int]
 Matrix: TypeAlias = tuple[Point, Point, Point]
+
+
+# Of the largest coordinate: many times what the rotation, the sum and the scalar product of floats can err.
+_ROUGH = 1e-12
+
+
+class Points(Sequence[Point]):
+    """Exact points, each made when it is first asked for.
+
+    Parameters
+    ----------
+    exact : the point at a place
+    rough : (n, 3) float array, near the points, in any unit
+    """
+
+    def __init__(self, exact: Callable[[int], Point], rough: Floats) -> None:
+        self.rough = rough
+        self._exact = exact
+        self._known: dict[int, Point] = {}
+        self._slack = 2 * _ROUGH * float(np.abs(rough).max(initial=0.0))
+
+    @classmethod
+    def of(cls, points: Sequence[Point]) -> Points:
+        """Points that are there already."""
+        return points if isinstance(points, Points) else cls(points.__getitem__, in_floats(points))
+
+    def __len__(self) -> int:
+        return len(self.rough)
+
+    @overload
+    def __getitem__(self, place: int) -> Point: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Point]: ...
+    def __getitem__(self, place: int | slice) -> Point | list[Point]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(*place.indices(len(self)))]
+        if not 0 <= place < len(self):
+            raise IndexError(place)
+        if place not in self._known:
+            self._known[place] = self._exact(place)
+        return self._known[place]
+
+    def lowest(self, direction: Point) -> int:
+        """Which point lies least far along a direction, exactly; the first of several."""
+        along = in_floats([direction])[0]
+        heights = self.rough @ along
+        near = np.flatnonzero(heights <= heights.min() + self._slack * np.abs(along).sum())
+        return min(near.tolist(), key=lambda place: dot(direction, self[place])) if len(near) > 1 else int(near[0])
+
+    def highest(self, direction: Point) -> int:
+        """Which point lies farthest along a direction, exactly; the first of several."""
+        return self.lowest((-direction[0], -direction[1], -direction[2]))
+
+    def shifted(self, by: Point, rough_by: Floats) -> Points:
+        """All points moved: by integers, and by floats near them in the unit of the rough ones."""
+
+        def moved(place: int) -> Point:
+            x, y, z = self[place]
+            return x + by[0], y + by[1], z + by[2]
+
+        return Points(moved, self.rough + rough_by)
+
+
+def in_floats(points: Sequence[Point]) -> Floats:
+    """(n, 3): the points in floats, in a common unit; integers may be too large for one."""
+    excess = max(0, max(abs(part).bit_length() for point in points for part in point) - 512)
+    return np.array([[float(part >> excess) for part in point] for point in points])
 
 
 @dataclass(frozen=True)
@@ -35,24 +106,33 @@ class Placed:
     quaternion: Floats
 
 
-def world_points(first: Placed, second: Placed) -> tuple[list[Point], list[Point], Fraction]:
+def world_points(first: Placed, second: Placed) -> tuple[Points, Points, Fraction]:
     """Points of two bodies in the world, exactly.
 
     Returns
     -------
-    first, second : lists of integer points
+    first, second : Points
+        Their rough coordinates are in m, relative to the position of the first body.
     unit : m; a coordinate is its integer times this, relative to the position of the first body
     """
     (rotation, norm), (other_rotation, other_norm) = _rotation(first.quaternion), _rotation(second.quaternion)
     rows = [first.points, second.points, first.position[None], second.position[None]]
     scaled, quantum = _integers(np.concatenate(rows))
-    count = len(first.points)
-    start, end = scaled[-2], scaled[-1]
-    shift = [(b - a) * norm * other_norm for a, b in zip(start, end, strict=True)]
-    one = [_turned(rotation, (x * other_norm, y * other_norm, z * other_norm)) for x, y, z in scaled[:count]]
-    other = [_turned(other_rotation, (x * norm, y * norm, z * norm)) for x, y, z in scaled[count:-2]]
-    moved = [(x + shift[0], y + shift[1], z + shift[2]) for x, y, z in other]
-    return one, moved, quantum / (norm * other_norm)
+    count, total = len(first.points), len(first.points) + len(second.points)
+    shift = [(b - a) * norm * other_norm for a, b in zip(scaled(total), scaled(total + 1), strict=True)]
+
+    def one(place: int) -> Point:
+        x, y, z = scaled(place)
+        return _turned(rotation, (x * other_norm, y * other_norm, z * other_norm))
+
+    def other(place: int) -> Point:
+        x, y, z = scaled(count + place)
+        x, y, z = _turned(other_rotation, (x * norm, y * norm, z * norm))
+        return x + shift[0], y + shift[1], z + shift[2]
+
+    apart = second.position - first.position
+    rough = _rough(first), _rough(second) + apart
+    return Points(one, rough[0]), Points(other, rough[1]), quantum / (norm * other_norm)
 
 
 def dot(a: Point, b: Point) -> int:
@@ -70,14 +150,24 @@ def determinant(a: Point, b: Point, c: Point) -> int:
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 
 
-def _integers(points: Floats) -> tuple[list[Point], Fraction]:
+def _rough(placed: Placed) -> Floats:
+    """The points turned, in floats."""
+    w, vector = placed.quaternion[0], placed.quaternion[1:]
+    across = 2.0 * np.cross(vector, placed.points) / float(placed.quaternion @ placed.quaternion)
+    return np.asarray(placed.points + w * across + np.cross(vector, across), np.float64)
+
+
+def _integers(points: Floats) -> tuple[Callable[[int], Point], Fraction]:
     """Points as multiples of the largest power of two that all their coordinates are multiples of, and that power."""
     mantissas, exponents = np.frexp(points)
     digits = (mantissas * 2.0**53).astype(np.int64)
     lowest = int(exponents[digits != 0].min(initial=1024))
     shifts = np.where(digits != 0, exponents - lowest, 0)
-    rows = zip(digits.tolist(), shifts.tolist(), strict=True)
-    scaled = [(x << i, y << j, z << k) for (x, y, z), (i, j, k) in rows]
+
+    def scaled(place: int) -> Point:
+        (x, y, z), (i, j, k) = digits[place].tolist(), shifts[place].tolist()
+        return x << i, y << j, z << k
+
     return scaled, Fraction(2) ** (lowest - 53)
 
 

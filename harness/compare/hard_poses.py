@@ -28,7 +28,7 @@ GAPS = (0.0, *(sign * 10.0**power for power in range(-15, -1) for sign in (1, -1
 """Of the size of the smaller body."""
 
 _FEATURES = ("vertex", "edge", "face")
-# The sizes of the two bodies and how far from the origin they are, m.
+# The sizes of the two bodies and how far from the origin they are, m: ratios up to the 10^4 that scenes have.
 _SIZES_AND_DISTANCES = (
     (1.0, 1.0, 0.0),
     (1.0, 1.0, 1e3),
@@ -38,7 +38,14 @@ _SIZES_AND_DISTANCES = (
     (1e3, 1e3, 1e6),
     (1.0, 0.3, 0.0),
     (10.0, 1.0, 10.0),
+    (50.0, 1.0, 0.0),
+    (1.0, 2000.0, 0.0),
+    (1e4, 1.0, 0.0),
 )
+_THINNED = 4
+"""Of hulls and meshes of other sizes, and far away, every n-th first contact: all of them take long to judge."""
+_STEPS = (4e-7, -4e-7, 3e-8, -3e-8, 2e-9, -2e-9)
+"""Gaps, of the size of the smaller body, that follow each other at one contact: poses nearer together than 1e-6."""
 _SEED = 259
 
 
@@ -58,32 +65,53 @@ def hard_poses(shape: Shape, mesh: Mesh | None, every: int = 1) -> Iterator[Pose
     mesh : None for spheres
     every : of the first contacts, take every n-th
     """
-    for size, other, away in _SIZES_AND_DISTANCES:
-        yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away, every=every), hard=True)
+    for number, (size, other, away) in enumerate(_SIZES_AND_DISTANCES):
+        some = every if number == 0 or shape == "sphere" else max(every, _THINNED)
+        yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away, every=some), hard=True)
 
 
 def _poses(scene: Scene, away: float, every: int) -> tuple[Pose, ...]:
     first, second = scene.bodies.sizes.tolist()
-    return (*_first_contacts(scene, away, every), *_overlaps((first, second), away))
+    return (
+        *_first_contacts(scene, away, every),
+        *_small_steps(scene, away, every),
+        *_overlaps((first, second), away),
+    )
 
 
 def _first_contacts(scene: Scene, away: float, every: int) -> Iterator[Pose]:
+    for number, (features, gap) in enumerate(product(_features(scene), GAPS)):
+        if number % every == 0:
+            yield from _at_contact(scene, away, features, (gap,), np.random.default_rng((_SEED, number)))
+
+
+def _small_steps(scene: Scene, away: float, every: int) -> Iterator[Pose]:
+    for number, features in enumerate(_features(scene)):
+        if number % min(every, len(_FEATURES)) == 0:
+            yield from _at_contact(scene, away, features, _STEPS, np.random.default_rng((_SEED, number, 1)))
+
+
+def _features(scene: Scene) -> list[tuple[str, str]]:
+    names = ("surface",) if scene.shape == "sphere" else _FEATURES
+    return list(product(names, names))
+
+
+def _at_contact(
+    scene: Scene, away: float, features: tuple[str, str], gaps: Sequence[float], rng: np.random.Generator
+) -> Iterator[Pose]:
+    """Two bodies by a feature of each, at one gap (of the smaller size) after another along the same normal."""
     sizes = scene.bodies.sizes.tolist()
-    solids = [_solid(scene, size) for size in sizes]
-    names = ("surface",) if solids[0] is None else _FEATURES
-    for number, ((first, second), gap) in enumerate(product(product(names, names), GAPS)):
-        if number % every:
-            continue
-        rng = np.random.default_rng((_SEED, number))
-        contact, other = (
-            _contact(solid, size, name, rng) for solid, size, name in zip(solids, sizes, (first, second), strict=True)
-        )
-        turned = _random_turn(rng)
-        normal = _rotated(turned, contact.outward)
-        against = _turn_onto(other.outward, -normal, rng.uniform(0, 2 * np.pi))
-        centre = away * _direction(rng)
+    contact, other = (
+        _contact(_solid(scene, size), size, name, rng) for size, name in zip(sizes, features, strict=True)
+    )
+    turned = _random_turn(rng)
+    normal = _rotated(turned, contact.outward)
+    against = _turn_onto(other.outward, -normal, rng.uniform(0, 2 * np.pi))
+    centre = away * _direction(rng)
+    for gap in gaps:
         place = centre + _rotated(turned, contact.point) + gap * min(sizes) * normal - _rotated(against, other.point)
-        yield Pose(f"{first} to {second}, gap {gap:g}", np.array([centre, place]), np.array([turned, against]))
+        name = f"{features[0]} to {features[1]}, gap {gap:g}"
+        yield Pose(name, np.array([centre, place]), np.array([turned, against]))
 
 
 def _overlaps(sizes: tuple[float, float], away: float) -> Iterator[Pose]:

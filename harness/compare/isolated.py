@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-
 from harness.arrays import Pairs
 from harness.backends import registry
-from harness.backends.protocol import Backend, approximations, own_hulls, own_hulls_tolerance
+from harness.backends.contract import ContractError, read_only, require_pairs
+from harness.backends.protocol import (
+    Backend,
+    approximations,
+    contained_is_touching,
+    own_hulls,
+    own_hulls_tolerance,
+)
 from harness.child_process import Channel, Child
 from harness.compare.poses import Pose
 from harness.errors import InputError
@@ -38,12 +44,14 @@ class Facts:
     approximated : by what it replaces the shape, if it does
     hulls : those it holds in place of the scene's, by the size of a body
     hulls_tolerance : of size, where those are taken as the truth
+    solid : it says that of two bodies one inside the other touches, though the shape is a surface
     """
 
     tolerance: float
     approximated: str | None = None
     hulls: Mapping[float, Hull] = field(default_factory=dict)
     hulls_tolerance: float = 0.0
+    solid: bool = False
 
 
 class UnusableError(Exception):
@@ -119,6 +127,14 @@ class Isolated:
             self._child = None
 
 
+def preload(name: str) -> None:
+    """Import what stands behind a name, where it comes with this program: then the processes of it need not, each."""
+    backend = name.partition("/")[0]
+    if registry.ours(backend):
+        with suppress(InputError):
+            registry.create(backend)
+
+
 def _create(name: str, shape: Shape) -> Backend:
     """What stands behind a name: a method of this program ("fcl/grid"), or a backend's own pipeline ("pybullet")."""
     return AtPoses(MethodName.read(name, shape)) if "/" in name else registry.create(name)
@@ -136,6 +152,7 @@ def _serve(name: str, scene: Scene, channel: Channel) -> None:
             approximations(backend).get(scene.shape),
             own_hulls(backend) if scene.shape == "hull" else {},
             own_hulls_tolerance(backend),
+            contained_is_touching(backend, scene.shape),
         )
     except Exception as error:  # a plugin may fail in any way
         channel.send(pickle.dumps(str(error) if isinstance(error, InputError) else _told(error)))
@@ -145,7 +162,10 @@ def _serve(name: str, scene: Scene, channel: Channel) -> None:
         positions, quaternions = pickle.loads(asked)
         answer: Any
         try:
-            answer = _checked(backend.pairs(positions, quaternions), len(positions))
+            answer = backend.pairs(read_only(positions), read_only(quaternions))
+            answer = require_pairs(name, answer, len(positions))
+        except ContractError as error:
+            answer = str(error)
         except Exception as error:
             answer = _told(error)
         channel.send(pickle.dumps(answer))
@@ -153,15 +173,3 @@ def _serve(name: str, scene: Scene, channel: Channel) -> None:
 
 def _told(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
-
-
-def _checked(pairs: Pairs, count: int) -> Pairs:
-    """The answer, if it is one: pairs i < j of bodies that there are."""
-    found = np.asarray(pairs)
-    if found.size == 0:
-        return np.empty((0, 2), np.int64)
-    if found.ndim != 2 or found.shape[1] != 2 or not np.issubdtype(found.dtype, np.integer):
-        raise ValueError(f"an answer must be a (k, 2) array of body numbers, not {found.dtype} of shape {found.shape}")
-    if (found[:, 0] >= found[:, 1]).any() or found.min() < 0 or found.max() >= count:
-        raise ValueError("an answer must have pairs i < j of bodies that there are")
-    return found.astype(np.int64)

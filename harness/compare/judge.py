@@ -16,15 +16,15 @@ from harness.arrays import Floats
 from harness.compare import certificate
 from harness.compare.certificate import Judgement, distance_along
 from harness.compare.convex import CommonPoint, Plane, meet
-from harness.compare.exact import Placed, Point, world_points
+from harness.compare.exact import Placed, Point, Points, world_points
 from harness.compare.surfaces import judge_surfaces
 from harness.scene.mesh import Triangles
 from harness.scene.scene import Scene
 
 # Steps towards the penetration depth; each that helps comes strictly nearer, most overlaps need two or three.
 _MOST_STEPS = 10
-# Directions, and vertices, beyond which not every one is put to every other.
-_MANY, _FEW = 1200, 100
+# Vertices that bound the width along a direction, and directions whose width is worked out at a time.
+_FEW, _AT_ONCE = 60, 32
 
 
 def judge(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) -> Judgement:
@@ -83,24 +83,17 @@ def _hulls(first: Placed, faces: Triangles, second: Placed, other_faces: Triangl
     return Judgement(True, -depth, certificate.of_common_point(found, one, first.position.tolist(), unit))
 
 
-def _depth(
-    first: Sequence[Point], faces: Triangles, second: Sequence[Point], other_faces: Triangles, unit: Fraction
-) -> float:
+def _depth(first: Points, faces: Triangles, second: Points, other_faces: Triangles, unit: Fraction) -> float:
     """The penetration depth, m: along the normals of all faces, then improved where edges give a shorter way."""
-    one, other = _floats(first, unit), _floats(second, unit)
+    one, other = first.rough, second.rough
     normals = np.vstack([-_normals(one, faces), _normals(other, other_faces)])
-    if len(normals) > _MANY:
-        # of a few vertices each, to find the directions that are worth all of them
-        few = _widths(one[:: len(one) // _FEW + 1], other[:: len(other) // _FEW + 1], normals)
-        normals = normals[np.argsort(few, kind="stable")[:_MANY]]
-    widths = _widths(one, other, normals)
-    depth, normal = float(widths.min()), normals[widths.argmin()]
+    depth, normal = _least_width(one, other, normals)
     extent = float(np.ptp(one, axis=0).max())
     for _ in range(_MOST_STEPS):
         # moved out along the best way so far, the sets lie apart, and their shortest connection is a better way
         way = normal * (depth + 1e-3 * extent)
         x, y, z = (round(Fraction(part) / unit) for part in way.tolist())
-        apart = meet([(a + x, b + y, c + z) for a, b, c in first], second)
+        apart = meet(first.shifted((x, y, z), way), second)
         if isinstance(apart, CommonPoint):
             break
         shorter = -distance_along(apart, first, second, unit)
@@ -112,14 +105,26 @@ def _depth(
     return max(depth, 0.0)
 
 
+def _least_width(one: Floats, other: Floats, normals: Floats) -> tuple[float, Floats]:
+    """How far one set must be moved to part from the other along the best of some directions, and that direction."""
+    # of some vertices each, which is never more than of all: no direction is worth all whose bound is no better
+    bounds = _widths(one[:: len(one) // _FEW + 1], other[:: len(other) // _FEW + 1], normals)
+    order = np.argsort(bounds, kind="stable")
+    least, best = np.inf, order[0]
+    for start in range(0, len(order), _AT_ONCE):
+        some = order[start : start + _AT_ONCE]
+        if bounds[some[0]] >= least:
+            break
+        widths = _widths(one, other, normals[some])
+        if widths.min() < least:
+            least, best = float(widths.min()), some[widths.argmin()]
+    return float(least), np.asarray(normals[best], np.float64)
+
+
 def _shortened(point: Point) -> Point:
     """The same direction, to more digits than floats hold, in integers that they can hold."""
     excess = max(0, max(abs(part).bit_length() for part in point) - 100)
     return point[0] >> excess, point[1] >> excess, point[2] >> excess
-
-
-def _floats(points: Sequence[Point], unit: Fraction) -> Floats:
-    return np.array([[part * unit.numerator / unit.denominator for part in point] for point in points])
 
 
 def _widths(one: Floats, other: Floats, directions: Floats) -> Floats:

@@ -41,13 +41,21 @@ class Case:
 
 @dataclass(frozen=True)
 class Failure:
-    """A backend that crashed, hung or raised at a pose; `query_index` as in `Case`."""
+    """A backend that crashed, hung or raised at a pose, or cannot be held to what it says; `query_index` as in `Case`.
+
+    Parameters
+    ----------
+    kind : "crashed"; "random" or "depends on order" for a verdict that changes; "claim" for what it says of itself
+    bodies : of the pair whose verdict changes
+    """
 
     backends: NamePair
     backend: str
     pose: str
     query_index: int
     reason: str
+    kind: str = "crashed"
+    bodies: tuple[int, ...] = ()
 
 
 @dataclass
@@ -61,6 +69,7 @@ class Comparison:
     shared : verdicts that both backends agree on and that the judge contradicts; `wrong` names both
     failures : poses at which a backend crashed, hung or raised
     unsupported : which pairs could not be compared, and why
+    left_out : what was not asked, because the time for it was spent
     flights : pairs of free runs, each by the hits of its own backend
     """
 
@@ -72,6 +81,7 @@ class Comparison:
     shared: list[Case] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
     unsupported: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
     flights: list[FreeRunPair] = field(default_factory=list)
 
     def add(self, other: Comparison) -> None:
@@ -84,6 +94,7 @@ class Comparison:
         self.shared += other.shared
         self.failures += other.failures
         self.flights += other.flights
+        self.left_out += [line for line in other.left_out if line not in self.left_out]
         self.unsupported += [line for line in other.unsupported if line not in self.unsupported]
 
     @property

@@ -7,7 +7,6 @@ one pair a frame whose bounding spheres touch (of meshes, whose judgement takes 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -15,15 +14,15 @@ from scipy.spatial import cKDTree
 
 from harness.arrays import Pairs
 from harness.compare.certificate import Judgement
+from harness.compare.group import LARGEST_TOLERANCE
 from harness.compare.isolated import Facts
-from harness.compare.judge import judge, touches
 from harness.compare.outcome import Case, Comparison
 from harness.compare.poses import Pose
 from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally
+from harness.compare.truths import Pair, Truths
 from harness.scene.scene import Scene
 
 Kind = Literal["undecided", "containment", "approximation", "real"]
-Pair = tuple[int, int]
 
 _HARD_CHECKED, _MESHES_CHECKED = 4, 10
 
@@ -58,12 +57,12 @@ class PairAudit:
             approximations=[self._approximation] if self._approximation else [],
         )
 
-    def add(self, pose: Pose, query_index: int, answers: Sequence[Pairs]) -> None:
+    def add(self, truths_there: Truths, query_index: int, answers: Sequence[Pairs]) -> None:
         """Count the verdicts of both at a pose.
 
         Parameters
         ----------
-        pose : Pose
+        truths_there : what is true at the pose
         query_index : which query of this scene it was, from 1
         answers : the touching pairs, as each has them
         """
@@ -74,52 +73,53 @@ class PairAudit:
         self._tally.poses += 1
         self._tally.verdicts += pairs
         self._tally.agree += pairs - len(differing)
-        truths = {pair: self._judge_disagreement(pose, query_index, pair, pair in first) for pair in differing}
+        truths = {pair: self._judge_disagreement(truths_there, query_index, pair, pair in first) for pair in differing}
         if self._approximation is not None:
             reported = first if self._approximation.backend == self._names[0] else second
             _count_approximation(self._approximation, pairs, first & second, reported, truths)
-        self._check_agreement(pose, query_index, first, second)
+        self._check_agreement(truths_there, query_index, first, second)
 
-    def _judge_disagreement(self, pose: Pose, query_index: int, pair: Pair, first_reports: bool) -> Judgement:
+    def _judge_disagreement(self, truths: Truths, query_index: int, pair: Pair, first_reports: bool) -> Judgement:
         """Judge a disagreement and count it."""
-        truth = judge(self._scene, *pair, pose.positions, pose.quaternions)
+        truth = truths.judgement(pair)
         wrong = int(first_reports == truth.touching)
-        kind = self._kind(pose, pair, truth, wrong)
+        kind = self._kind(truths, pair, wrong)
         setattr(self._tally, kind, getattr(self._tally, kind) + 1)
         self._gaps.count(kind, truth.gap / float(self._scene.bodies.sizes[list(pair)].min()))
         if kind == "real":
-            self.found.cases.append(self._case(self._names[wrong], pair, truth, pose, query_index))
+            self.found.cases.append(self._case(self._names[wrong], pair, truth, truths.pose, query_index))
         return truth
 
-    def _check_agreement(self, pose: Pose, query_index: int, first: set[Pair], second: set[Pair]) -> None:
+    def _check_agreement(self, truths: Truths, query_index: int, first: set[Pair], second: set[Pair]) -> None:
         """Judge one of the verdicts that both agree on, at every n-th query."""
         every = _HARD_CHECKED if not self._flown else _MESHES_CHECKED if self._scene.shape == "mesh" else 1
-        pair = _near_pair(self._scene, pose, query_index) if (query_index - 1) % every == 0 else None
+        pair = _near_pair(self._scene, truths.pose, query_index) if (query_index - 1) % every == 0 else None
         if pair is None or (pair in first) != (pair in second):
             return
         self._checked.verdicts += 1
-        if touches(self._scene, *pair, pose.positions, pose.quaternions) == (pair in first):
+        if truths.touch(pair) == (pair in first):
             return
-        truth = judge(self._scene, *pair, pose.positions, pose.quaternions)
-        wrong = [place for place in (0, 1) if self._kind(pose, pair, truth, place) == "real"]
+        truth = truths.judgement(pair)
+        wrong = [place for place in (0, 1) if self._kind(truths, pair, place) == "real"]
         names = " and ".join(self._names[place] for place in wrong)
         if wrong:
             self._checked.contradicted += 1
-            self.found.shared.append(self._case(names, pair, truth, pose, query_index))
+            self.found.shared.append(self._case(names, pair, truth, truths.pose, query_index))
 
     def _case(self, wrong: str, pair: Pair, truth: Judgement, pose: Pose, query_index: int) -> Case:
         return Case(self._names, wrong, pair, truth, scene=self._scene, pose=pose, query_index=query_index)
 
-    def _kind(self, pose: Pose, pair: Pair, truth: Judgement, wrong: int) -> Kind:
+    def _kind(self, truths: Truths, pair: Pair, wrong: int) -> Kind:
         """What explains that the backend at a place in `names` is wrong; "real" if nothing does."""
-        band = _band(self._scene, self._facts, pose, pair)
+        truth = truths.judgement(pair)
+        band = _band(self._scene, self._facts[wrong], self._facts[1 - wrong], truths.pose, pair)
         if abs(truth.gap) <= band:
             return "undecided"
-        if truth.contained:
-            return "containment"
+        if truth.contained and self._facts[wrong].solid:
+            return "containment"  # of a surface, which the judge alone takes it for
         if self._facts[wrong].approximated is not None:
             # an approximation by the hull may be wrong about the mesh, but must be right about the hull
-            hulls = judge(replace(self._scene, shape="hull"), *pair, pose.positions, pose.quaternions)
+            hulls = truths.of_hulls(pair)
             if hulls.touching != truth.touching or abs(hulls.gap) <= band:
                 return "approximation"
         return "real"
@@ -160,13 +160,10 @@ def _as_set(pairs: Pairs) -> set[Pair]:
     return {(i, j) for i, j in pairs.tolist()}
 
 
-def _band(scene: Scene, facts: tuple[Facts, Facts], pose: Pose, bodies: tuple[int, int]) -> float:
-    """m; of a nearer contact the two backends need not agree."""
-    holding = [bool(one.hulls) for one in facts]
-    trusted = sum(holding) == 1
-    tolerance = max(
-        one.hulls_tolerance if trusted and holds else one.tolerance for one, holds in zip(facts, holding, strict=True)
-    )
+def _band(scene: Scene, wrong: Facts, other: Facts, pose: Pose, bodies: tuple[int, int]) -> float:
+    """m; on a nearer contact the backend that is wrong need not be right. What the other declares excuses nothing."""
+    trusted = bool(wrong.hulls) != bool(other.hulls)
+    tolerance = min(wrong.hulls_tolerance if trusted and wrong.hulls else wrong.tolerance, LARGEST_TOLERANCE)
     chosen = list(bodies)
     largest = float(scene.bodies.sizes[chosen].max())
     return tolerance * largest + _ROUNDING * (float(np.abs(pose.positions[chosen]).max()) + largest)

@@ -13,6 +13,8 @@ from typing import Protocol
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
+from harness.backends.contract import read_only, require_pairs
+from harness.backends.protocol import Backend
 from harness.measure.clocks import Clock
 from harness.measure.conservation import energy
 from harness.methods.observer import Folds, Observer, Onsets
@@ -27,6 +29,8 @@ from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
 
+_UNTIMED = ""
+"""The clock of a step that no clock sees."""
 PHASES = ("pair_seconds", "response_seconds", "box_seconds")
 
 
@@ -97,7 +101,10 @@ class Stepping:
             clock.start()
             for phase, step in steps:
                 step(frame)
-                clock.lap(phase)
+                if phase == _UNTIMED:
+                    clock.start()
+                else:
+                    clock.lap(phase)
             observe(frame)
             return frame
 
@@ -144,12 +151,23 @@ def _steps(
     steps: list[_Step] = [("pair_seconds", move)]
     if detector is not None:
         detect = detector.pairs
+        positions, quaternions = trajectory.positions, trajectory.quaternions
+        # a backend may be anybody's; what is our own needs no such view, for which its kernels would be compiled anew
+        if isinstance(detector, Backend):
+            positions, quaternions = read_only(positions), read_only(quaternions)
 
         def move_and_detect(frame: _Frame) -> None:
             trajectory.move_to(frame.time)
-            frame.pairs = detect(trajectory.positions, trajectory.quaternions)
+            frame.pairs = detect(positions, quaternions)
 
         steps = [("pair_seconds", move_and_detect)]
+        if isinstance(detector, Backend):
+            name, count = detector.name, len(scene.bodies)
+
+            def check(frame: _Frame) -> None:
+                frame.pairs = require_pairs(name, frame.pairs, count)
+
+            steps.append((_UNTIMED, check))
     if response is None:
         return steps
 

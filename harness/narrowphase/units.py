@@ -14,6 +14,20 @@ UNITS = "the median size is about 1, by a power of two"
 """What the backends that do so say of it."""
 
 
+SMALLEST_UNITS = "the smallest size is about 1, by a power of two"
+"""What a backend says whose library errs by an absolute length, which must be little of every body."""
+
+
+def unit_of_smallest(sizes: Floats) -> float:
+    """The power of two nearest to the smallest size, m; 1 without bodies.
+
+    Parameters
+    ----------
+    sizes : (n,) float array, m
+    """
+    return float(2.0 ** np.round(np.log2(np.min(sizes)))) if len(sizes) else 1.0
+
+
 def unit_of(sizes: Floats) -> float:
     """The power of two nearest to the median size, m; 1 without bodies.
 

@@ -55,6 +55,21 @@ class Mesh:
     flat: bool = False
 
 
+THIN = 2.0**-50
+"""A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of it."""
+
+
+def has_area(vertices: NDArray[np.float64], faces: Triangles) -> NDArray[np.bool_]:
+    """Which faces have an area, (f,); `vertices` (v, 3) about the origin, in any unit.
+
+    The readers of files leave the others out; a mesh made in memory may have some.
+    """
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    longest = np.linalg.norm([b - a, c - b, a - c], axis=2).max(axis=0)
+    return np.asarray(twice_area > THIN * np.abs(vertices).max() * longest)
+
+
 def digest(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:
     """The sha256 by which two meshes are the same: of shapes and little-endian arrays, hexadecimal."""
     content = hashlib.sha256(f"{len(vertices)} {len(faces)}\n".encode())

@@ -17,7 +17,7 @@ from harness.scene.bounding_sphere import bounding_sphere
 from harness.scene.formats import FORMATS
 from harness.scene.formats.contents import recognised
 from harness.scene.hull import convex_hull, flat_hull
-from harness.scene.mesh import Mesh, digest
+from harness.scene.mesh import THIN, Mesh, digest
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, of_triangles, scaled
 from harness.scene.topology import Topology, is_convex, proper, topology
 from harness.scene.triangulation import Triangles, triangulated
@@ -26,9 +26,6 @@ MAX_BYTES = 512 * 1024**2
 # Below this, of its largest extent, a mesh is flat; above it every computation here keeps some digits.
 FLAT = 1e-9
 EXTENTS = (1e-100, 1e100)
-# A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of a coordinate.
-THIN = 2.0**-50
-FLAT_NOTE = "flat: it encloses nothing, so that it has shape mesh alone, and no hull"
 NO_AREA = "all faces of the mesh are degenerate: it has no area"
 
 
