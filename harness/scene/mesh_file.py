@@ -26,6 +26,7 @@ MAX_BYTES = 512 * 1024**2
 # Below this, of its largest extent, a mesh is flat; above it every computation here keeps some digits.
 FLAT = 1e-9
 EXTENTS = (1e-100, 1e100)
+FLAT_NOTE = "flat: it encloses nothing, so that it has shape mesh alone, and no hull"
 NO_AREA = "all faces of the mesh are degenerate: it has no area"
 
 
