@@ -1,12 +1,21 @@
 """Each backend against closed forms, and against each other."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from harness.backends import registry
+from harness.backends.contract import ContractError
+from harness.compare.hard_poses import hard_poses
+from harness.compare.judge import judge
+from harness.methods.registry import method_of
+from harness.motion.law import MotionLaw
 from harness.scene.box import Box
 from harness.scene.scene import Scene
+from harness.vocabulary import MethodName
 from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.narrowphase.meshes import mesh_named
 
 
 def load(name, scene):
@@ -91,3 +100,100 @@ def test_a_backend_says_what_it_approximates():
 
     assert "hull" in approximations(registry.create("pybullet"))["mesh"]
     assert approximations(registry.create("fcl")) == {}
+
+
+def test_small_hulls_among_large_ones_are_judged_to_rounding():
+    """In units of the median size FCL would take gaps of 1e-2 of these sizes for overlaps."""
+    width, small = 1 / np.sqrt(3), 5e-4
+    for gap, hits in ((1e-9, []), (-1e-9, [[0, 1]])):
+        positions = [[0, 0, 0], [small * (width + gap), small * 0.01, 0], *([3.0 + 2 * k, 5, 5] for k in range(5))]
+        bodies = make_bodies(positions, sizes=[small, small, 1, 1, 1, 1, 1])
+        assert touching("fcl", Scene("hull", cube_mesh(), bodies, Box(np.full(3, 40.0)))) == hits
+
+
+def test_the_tolerance_of_fcl_depends_on_how_unlike_the_hulls_are():
+    for ratio, tolerance in ((256.0, 1e-11), (2000.0, 1e-4)):
+        bodies = make_bodies([[0, 0, 0], [3 * ratio, 0, 0]], sizes=[1.0, ratio])
+        backend = load("fcl", Scene("hull", cube_mesh(), bodies, Box(np.full(3, 9.0 * ratio))))
+        assert backend.tolerance("hull") == tolerance
+        assert backend.tolerance("mesh") == 1e-14
+
+
+@pytest.mark.slow
+def test_hulls_with_tiny_edges_are_judged_to_the_declared_tolerance():
+    mesh = mesh_named("package:pybullet_data/lego/lego_vhacd.obj")
+    (pose_set,) = list(hard_poses("hull", mesh))[:1]
+    backend = load("fcl", pose_set.scene)
+    wrong = []
+    for pose in pose_set.poses(pose_set.scene):
+        hit = len(backend.pairs(pose.positions, pose.quaternions)) > 0
+        truth = judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions)
+        if hit != truth.touching:
+            wrong.append(abs(truth.gap))
+    assert max(wrong, default=0.0) < backend.tolerance("hull")
+
+
+def test_a_face_without_area_changes_no_verdict_of_fcl():
+    mesh = cube_mesh()
+    a, b = mesh.faces[0, :2]
+    with_thin = dataclasses.replace(mesh, faces=np.vstack([mesh.faces, [[a, b, a]]]).astype(np.int32))
+    width = 1 / np.sqrt(3)
+    for gap, hits in ((1e-7, []), (1e-9, []), (1e-12, []), (-1e-12, [[0, 1]])):
+        bodies = make_bodies([[0, 0, 0], [width + gap, 0.01, 0.02]])
+        for one in (mesh, with_thin):
+            assert touching("fcl", Scene("mesh", one, bodies, Box(np.full(3, 4.0)))) == hits
+
+
+@pytest.mark.parametrize(
+    ("answer", "told"),
+    [
+        ([[0, 2], [0, 1]], "not sorted"),
+        ([[0, 1], [0, 1]], "there twice"),
+        ([[1, 1]], "i < j"),
+        ([[0, 3]], "no such pair of 3 bodies"),
+        ([[-1, 1]], "no such pair of 3 bodies"),
+        ([[0.0, 1.0]], "float64"),
+        ([0, 1], r"shape \(2,\)"),
+    ],
+)
+def test_an_answer_that_breaks_the_contract_ends_a_run_with_the_backend_named(answer, told):
+    class Broken:
+        name, shapes = "broken", ("sphere",)
+
+        def tolerance(self, shape):
+            return 0.0
+
+        def load(self, scene):
+            pass
+
+        def pairs(self, positions, quaternions):
+            return np.array(answer)
+
+    scene = random_scene("sphere", 3, 4.0)
+    law = MotionLaw(0.1, 0.1, "reflect")
+    method = method_of(MethodName("pybullet", "native", "sphere"))
+    method.backend = Broken
+    with pytest.raises(ContractError, match=told) as error:
+        method.load(scene, method.plan(scene, law)).fly(law)
+    assert 'backend "broken"' in str(error.value)
+
+
+def test_a_backend_cannot_write_to_the_poses_of_a_run():
+    class Writes:
+        name, shapes = "writes", ("sphere",)
+
+        def tolerance(self, shape):
+            return 0.0
+
+        def load(self, scene):
+            pass
+
+        def pairs(self, positions, quaternions):
+            positions[:] = 0.0
+
+    scene = random_scene("sphere", 3, 4.0)
+    law = MotionLaw(0.1, 0.1, "reflect")
+    method = method_of(MethodName("pybullet", "native", "sphere"))
+    method.backend = Writes
+    with pytest.raises(ValueError, match="read-only"):
+        method.load(scene, method.plan(scene, law)).fly(law)

@@ -1,0 +1,146 @@
+"""Backends that lie, each in one way: what a judge must see through. Each is FCL, but for what stands here."""
+
+from __future__ import annotations
+
+import textwrap
+
+LIARS = {
+    # drops one hit of seven at random, of the operating system's own randomness
+    "drops-at-random": """
+        def pairs(self, positions, quaternions):
+            found = super().pairs(positions, quaternions)
+            return found[[os.urandom(1)[0] >= 37 for _ in range(len(found))]]
+    """,
+    "random-verdicts": """
+        def pairs(self, positions, quaternions):
+            found = super().pairs(positions, quaternions)
+            return found if os.urandom(1)[0] >= 128 else found[:0]
+    """,
+    "drops-neighbours": """
+        def pairs(self, positions, quaternions):
+            found = super().pairs(positions, quaternions)
+            return found[found[:, 1] != found[:, 0] + 1]
+    """,
+    "last-frame": """
+        last = np.empty((0, 2), np.int64)
+        def pairs(self, positions, quaternions):
+            last, self.last = self.last, super().pairs(positions, quaternions)
+            return last
+    """,
+    # a cache that takes poses for the same that are nearer together than 1e-6
+    "caches": """
+        asked, said = None, None
+        def pairs(self, positions, quaternions):
+            if self.asked is None or np.abs(self.asked - positions).max() > 1e-6:
+                self.asked, self.said = positions.copy(), super().pairs(positions, quaternions)
+            return self.said
+    """,
+    "learns": """
+        calls = 0
+        def pairs(self, positions, quaternions):
+            self.calls += 1
+            found = super().pairs(positions, quaternions)
+            return found if self.calls <= 40 else found[:-1]
+    """,
+    "writes-poses": """
+        def pairs(self, positions, quaternions):
+            found = super().pairs(positions, quaternions)
+            positions[:] += 1.0
+            return found
+    """,
+    "doubles": """
+        def pairs(self, positions, quaternions):
+            return np.repeat(super().pairs(positions, quaternions), 2, axis=0)
+    """,
+    "unsorted": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions)[::-1]
+    """,
+    "turned-round": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions)[:, ::-1]
+    """,
+    "out-of-range": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions) + 1000
+    """,
+    "floats": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions).astype(float)
+    """,
+    "halves-hulls": """
+        own_hulls_tolerance = 1e-9
+        def load(self, scene):
+            sizes = dict.fromkeys(scene.bodies.sizes.tolist())
+            if scene.shape == "hull":
+                halves = {size: scene.solid_of(size) for size in sizes}
+                self.own_hulls = {size: hull_of(one.vertices / 2, one.faces) for size, one in halves.items()}
+                scene = dataclasses.replace(scene, hulls=self.own_hulls)
+            super().load(scene)
+    """,
+    "inflates-by-1e-3": """
+        def load(self, scene):
+            bodies = scene.bodies.copy()
+            bodies.sizes *= 1.001
+            super().load(dataclasses.replace(scene, bodies=bodies))
+    """,
+    "tolerates-all": """
+        def tolerance(self, shape):
+            return 0.1
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions * 1.05, quaternions)
+    """,
+    "tolerates-nan": """
+        def tolerance(self, shape):
+            return float("nan")
+    """,
+    "spheres-for-all": """
+        def load(self, scene):
+            super().load(dataclasses.replace(scene, shape="sphere"))
+    """,
+    "blind": """
+        def pairs(self, positions, quaternions):
+            return super().pairs(positions, quaternions)[:0]
+    """,
+    "sees-all": """
+        def pairs(self, positions, quaternions):
+            i, j = np.triu_indices(len(positions), 1)
+            return np.column_stack([i, j])
+    """,
+    "sleeps": """
+        def pairs(self, positions, quaternions):
+            time.sleep(60)
+    """,
+    "raises": """
+        def pairs(self, positions, quaternions):
+            raise RuntimeError("no")
+    """,
+}
+
+# The kinds of finding by which a liar may be named.
+BY_CONTRACT = ("writes-poses", "doubles", "unsorted", "turned-round", "out-of-range", "floats")
+BY_CLAIM = ("halves-hulls", "tolerates-all", "tolerates-nan")
+BY_CHANGE = {"drops-at-random": "random", "random-verdicts": "random", "learns": "depends on order"}
+
+HEAD = """
+import dataclasses, os, time
+import numpy as np
+from harness.backends.fcl import Fcl
+from harness.scene.hull import hull_of
+
+class Plugin(Fcl):
+    name = {name!r}
+"""
+
+
+def install(name: str, folder, monkeypatch) -> str:
+    """Install one of them as a package of its own would be; its name."""
+    metadata = folder / f"{name.replace('-', '_')}-1.0.dist-info"
+    metadata.mkdir(parents=True)
+    (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    module = f"{name.replace('-', '_')}_liar"
+    (metadata / "entry_points.txt").write_text(f"[harness.backends]\n{name} = {module}:Plugin\n")
+    body = textwrap.indent(textwrap.dedent(LIARS[name]), 4 * " ")
+    (folder / f"{module}.py").write_text(HEAD.format(name=name) + body)
+    monkeypatch.syspath_prepend(str(folder))
+    return name
