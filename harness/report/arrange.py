@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
 
 from harness.measure.noise import Control, controls_of
+from harness.report.backends.correctness import Correctness
+from harness.report.disputes import disputed
 from harness.report.methods import method_label
 from harness.report.point import METHOD, MeasuredPoint
 from harness.report.series import Arrangement, Series, hashable, is_number
@@ -24,7 +27,7 @@ def arrange(
     record: ExperimentRecord,
     runs: pd.DataFrame,
     controls: Sequence[ControlRecord] = (),
-    wrong: Collection[MethodName] = (),
+    known: Correctness = Correctness(),  # noqa: B008  nobody changes it
 ) -> Arrangement:
     """Arrange an experiment's points.
 
@@ -33,14 +36,16 @@ def arrange(
     record : of the experiment
     runs : rows of the run table that belong to it
     controls : of its points
-    wrong : methods that were proven wrong at its poses
+    known : what comparisons at its poses have found
     """
     by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
     nothing = runs.iloc[:0]
     points = [
-        MeasuredPoint(row, by_point.get(row.key, nothing), bool(wrong) and MethodName.of(row.parameters) in wrong)
+        MeasuredPoint(row, by_point.get(row.key, nothing), known.is_wrong(MethodName.of(row.parameters)))
         for row in record.points
     ]
+    unsure = disputed(record, points, known)
+    points = [replace(point, disputed=point.row.key in unsure) for point in points] if unsure else points
     report: Mapping[str, Any] = record.specification.get("report") or {}
     swept = [leaf for leaf in record.specification.get("swept") or () if _spread(points, leaf) > 1]
     x = _x_leaf(points, swept, report.get("x"))

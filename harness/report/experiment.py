@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -12,6 +12,7 @@ import pandas as pd
 
 from harness.measure.metrics import METRICS
 from harness.report.arrange import arrange
+from harness.report.backends.correctness import Correctness
 from harness.report.criteria import refusals
 from harness.report.family import Family
 from harness.report.figure import Figure, figures_of
@@ -23,7 +24,6 @@ from harness.report.ranking import Growth, growth
 from harness.report.replay import Replay, replay_of
 from harness.report.series import Arrangement
 from harness.store.records import ControlRecord, ExperimentRecord
-from harness.vocabulary import MethodName
 
 # Exponents are fitted for what the experiment asks for and for these counts, which have no noise.
 _COUNTS = ("pair_tests", "box_tests", "narrow_tests", "predictions", "events")
@@ -41,7 +41,7 @@ class ExperimentPage:
     folder : where the page lies below the report
     controls : of its points
     conditions : of the machines while its runs went on
-    wrong : methods that were proven wrong at its poses
+    known : what comparisons at its poses have found
     all_pages : those of all experiments, this one among them
     family : the comparisons of all of them; None where this one stands alone
     database : the results file, where a replay may be kept
@@ -52,7 +52,7 @@ class ExperimentPage:
     folder: PurePosixPath
     controls: Sequence[ControlRecord] = ()
     conditions: Sequence[Mapping[str, float]] = ()
-    wrong: Collection[MethodName] = ()
+    known: Correctness = field(default_factory=Correctness)
     all_pages: Sequence[ExperimentPage] = ()
     database: str | Path | None = None
     family: Family | None = None
@@ -65,7 +65,7 @@ class ExperimentPage:
     @cached_property
     def measured(self) -> Arrangement:
         """Its points as series, before it is known at which level two of them are told apart."""
-        return arrange(self.record, self.runs, self.controls, self.wrong)
+        return arrange(self.record, self.runs, self.controls, self.known)
 
     @cached_property
     def arrangement(self) -> Arrangement:

@@ -67,7 +67,7 @@ def _p_values(record: ExperimentRecord, arrangement: Arrangement) -> Iterator[fl
         if metric == COST:
             pairs |= {_key(a, b): (a, b) for a, b in _settings(record, arrangement)}
         for a, b in pairs.values():
-            if not a.is_wrong and not b.is_wrong:
+            if a.can_be_ranked and b.can_be_ranked:
                 p = resolution.p_value(paired(a, b, metric))
                 if p is not None:
                     yield p

@@ -32,11 +32,13 @@ class MeasuredPoint:
     row : as it is stored
     runs : a row a run, by repeat
     proven_wrong : whether its method was proven wrong at poses of this experiment, or failed at them
+    disputed : whether other methods saw other hits of the same motion, and it is not known who is right
     """
 
     row: PointRow
     runs: pd.DataFrame
     proven_wrong: bool = False
+    disputed: bool = False
 
     @property
     def parameters(self) -> Mapping[str, Any]:
@@ -105,6 +107,11 @@ class MeasuredPoint:
     def is_wrong(self) -> bool:
         """Whether its answers are known to be wrong: such a point is shown struck through, and never ranked."""
         return self.proven_wrong or self.disagrees
+
+    @property
+    def can_be_ranked(self) -> bool:
+        """Whether nothing speaks against its answers."""
+        return not self.is_wrong and not self.disputed
 
     @cached_property
     def _by_place(self) -> dict[str, dict[tuple[int, str], float]]:

@@ -68,7 +68,7 @@ def rank(series: Sequence[Series], x: object, metric: str, resolution: Resolutio
     found = []
     for line in series:
         point = line.points[0] if x is None else line.at(x)
-        if point is not None and math.isfinite(point.median(metric)) and not point.is_wrong:
+        if point is not None and math.isfinite(point.median(metric)) and point.can_be_ranked:
             found.append((line, point, point.median(metric)))
     found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])
     if not found:

@@ -53,7 +53,7 @@ class Results:
                     folder_of(record.name, taken),
                     controls(self.database, [record.name]),
                     conditions(self.database, record.name),
-                    correctness(compared).wrong,
+                    correctness(compared),
                     pages,
                     self.database,
                     self.family,

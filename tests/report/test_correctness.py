@@ -92,3 +92,31 @@ def test_of_two_spellings_of_the_same_comparison_the_newest_counts():
     new = ComparisonRecord("x", ("fcl/brute-force", "pybullet"), "2026-02-01", "", document(["fcl", "pybullet"]))
     elsewhere = ComparisonRecord("y", ("fcl", "pybullet"), "2026-01-01", "", document(["fcl", "pybullet"]))
     assert newest([old, new, elsewhere]) == [new, elsewhere]
+
+
+def dispute_pages(report_of, digests, **fields):
+    def flown(parameters, repeat, metrics):
+        metrics["pair_seconds"] *= 4 if parameters["algorithm"] == "tree" else 1
+        metrics |= {"event_digest": float(digests[parameters["algorithm"]]), "pair_contacts": 3.0}
+
+    swept = {"algorithm": ["brute-force", "grid", "tree"]}
+    base = {"shape": "hull", "response": fields.pop("response", "none"), "count": 10}
+    return report_of(swept=swept, base=base, fate=flown, **fields)["pages/x/index.html"]
+
+
+def test_methods_that_saw_different_hits_of_one_motion_are_not_ranked(report_of):
+    page = dispute_pages(report_of, {"brute-force": 1, "grid": 2, "tree": 1})
+    assert "fcl brute-force and own grid and fcl tree saw different hits of the same motion" in page
+    assert "ahead of" not in page.split('<div class="box warning">')[0]
+
+
+def test_methods_that_saw_the_same_or_flew_motions_of_their_own_are_ranked(report_of):
+    same = dispute_pages(report_of, {"brute-force": 1, "grid": 1, "tree": 1})
+    assert "saw different hits" not in same
+    assert "ahead of" in same
+    assert "saw different" not in dispute_pages(report_of, {"brute-force": 1, "grid": 2, "tree": 1}, response="reflect")
+
+
+def test_where_there_is_a_reference_it_says_who_is_right(report_of):
+    page = dispute_pages(report_of, {"brute-force": 1, "grid": 2, "tree": 1}, reference={"algorithm": "predictive"})
+    assert "saw different hits" not in page

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from harness.store.records import ComparisonRecord
 from harness.vocabulary import MethodName
@@ -25,8 +25,8 @@ class Correctness:
     wrong : by method, how often it was wrong outside of its tolerance, or failed
     """
 
-    verdicts: Mapping[MethodName, int]
-    wrong: Mapping[MethodName, int]
+    verdicts: Mapping[MethodName, int] = field(default_factory=dict)
+    wrong: Mapping[MethodName, int] = field(default_factory=dict)
 
     def is_wrong(self, method: MethodName) -> bool:
         """Whether it was proven wrong, or failed."""

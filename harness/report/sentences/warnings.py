@@ -38,6 +38,15 @@ def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> lis
                 "<strong>{} proven wrong</strong> at poses of this experiment, or failed at them: never ranked."
             ).format(f"{' and '.join(proven)} {'was' if len(proven) == 1 else 'were'}")
         )
+    doubted = [point for point in arrangement.points if point.disputed]
+    if doubted:
+        names = dict.fromkeys(MethodName.of(point.parameters).label for point in doubted)
+        found.append(
+            Markup(
+                "<strong>{} saw different hits of the same motion</strong> in {}: nobody is ranked there until it is "
+                "known who is right, which <code>harness compare</code> finds out."
+            ).format(" and ".join(names), plural(len(doubted), "point"))
+        )
     escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
     if escaped:
         found.append(Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point")))

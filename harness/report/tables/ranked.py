@@ -58,6 +58,8 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
         note += " Bold: best, or not to be told from it. Tint: times worse than the best."
     if reasons:
         note += f" Without either: {', or '.join(reasons)}."
+    if any(point.disputed for point in arrangement.points):
+        note += " Not ranked: methods that saw different hits of the same motion."
     if any(point.is_wrong for point in arrangement.points):
         note += f" Struck through: {_why_struck(arrangement)}, and is not ranked."
     return Table(heading(metric), note, tuple(columns), tuple(rows))
