@@ -46,6 +46,7 @@ class Canvas:
         ys: Sequence[float],
         colour: str,
         width: float,
+        *,
         dashes: tuple[float, float] | None = None,
         marker: str | None = None,
         size: float = 0.0,

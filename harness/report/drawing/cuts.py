@@ -34,7 +34,7 @@ def draw_cut(cuts: Sequence[Sequence[Sequence[float]]], name: str) -> str:
             xs += [ax, bx, math.nan]
             ys += [ay, by, math.nan]
         if xs:
-            canvas.line(xs, ys, palette.colour(style), 1.8, dashes)
+            canvas.line(xs, ys, palette.colour(style), 1.8, dashes=dashes)
     length = 10.0 ** math.floor(math.log10(120 / zoom))
     start = width - 16 - length * zoom
     canvas.line([start, start + length * zoom], [14, 14], palette.SOFT, 2.0)

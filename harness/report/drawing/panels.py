@@ -137,11 +137,11 @@ def _line(canvas: Canvas, panel: Panel, line: Line, frame: Frame, form: Form) ->
     dashes = (4.0, 3.0) if line.foreign else (1.0, 3.0) if panel.categories else None
     marker = palette.MARKERS[0] if line.foreign else palette.marker(line.style)
     width, size = (1.5, 3.5) if form == "card" else (2.0, 6.0)
-    canvas.line(xs, ys, colour, width, dashes, marker, size, line.foreign)
+    canvas.line(xs, ys, colour, width, dashes=dashes, marker=marker, size=size, hollow=line.foreign)
     for (left, right), y in zip(line.spans, ys if line.spans else (), strict=True):
         canvas.line([frame.x(left), frame.x(right)], [y, y], colour, 4.0, alpha=0.45)
     for place in line.doubtful:
-        canvas.line([xs[place]], [ys[place]], colour, 0.0, None, marker, size, True)
+        canvas.line([xs[place]], [ys[place]], colour, 0.0, marker=marker, size=size, hollow=True)
 
 
 def _front(canvas: Canvas, panel: Panel, frame: Frame) -> None:
