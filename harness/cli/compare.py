@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     keep = []
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
-        budget.left_out.append(f"only every {budget.every}th pose of each scene was asked about")
+        budget.left_out.append(f"of the poses of each scene one in {budget.every} was asked about")
     for experiment in experiments:
         names, lacking = backends_of(experiment, chosen)
         whole.unsupported += lacking

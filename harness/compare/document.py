@@ -70,7 +70,8 @@ def document(found: Comparison, rows: list[Reduced], files: dict[int, str]) -> d
     real = len(found.cases)
     return {
         "pairs": [_counts(tally) for tally in found.tallies],
-        "cases": cases[:real] + [failure_row(failure) for failure in found.failures],
+        "cases": cases[:real] + [failure_row(one) for one in found.failures if one.kind == "crashed"],
+        "findings": [failure_row(one) for one in found.failures if one.kind != "crashed"],
         "shared": cases[real:],
         "checked": [_counts(checked) for checked in found.checked],
         "approximations": [_approximation(one) for one in found.approximations],

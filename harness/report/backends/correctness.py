@@ -46,7 +46,7 @@ def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
         for tally in tallies:
             for name in tally["backends"]:
                 verdicts[MethodName.read(name, tally["shape"])] += tally["verdicts"]
-        for case in record.document["cases"] + record.document["shared"]:
+        for case in record.document["cases"] + record.document["shared"] + record.document.get("findings", []):
             for shape in sorted({tally["shape"] for tally in tallies}):
                 for name in case["wrong"].split(" and "):
                     wrong[MethodName.read(name, shape)] += 1

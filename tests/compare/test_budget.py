@@ -1,0 +1,27 @@
+"""A comparison that is to end early says what it left out."""
+
+from harness.compare.budget import Budget
+from harness.compare.comparison import compare
+from harness.compare.poses import flown
+from tests.compare.test_comparison import compared, written
+from tests.conftest import random_scene
+
+
+def test_every_third_pose_is_asked_of_both(tmp_path):
+    scene = random_scene("sphere", 4, 3.0)
+    (tally,) = compare([flown(scene, 9, 0.1)], ["fcl", "pybullet"], budget=Budget(every=3)).tallies
+    assert (tally.poses, tally.verdicts) == (4, 24)
+
+
+def test_without_time_nothing_is_asked_and_all_of_it_is_told():
+    budget = Budget(1e-9)
+    found = compare([flown(random_scene("sphere", 4, 3.0), 9, 0.1)], ["fcl", "pybullet"], budget=budget)
+    assert (found.tallies, found.passed) == ([], True)
+    assert budget.left_out == ["4 bodies, shape sphere: not asked, 1e-09 s were spent"]
+
+
+def test_json_says_what_was_left_out(tmp_path, capsys):
+    code, document = compared(capsys, written(tmp_path, "sphere"), "--budget", "1e-6", "--every", "2")
+    assert code == 0
+    assert document["left_out"][0] == "of the poses of each scene one in 2 was asked about"
+    assert "20 bodies, shape sphere: not asked, 1e-06 s were spent" in document["left_out"]
