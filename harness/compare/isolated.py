@@ -162,7 +162,10 @@ def _serve(name: str, scene: Scene, channel: Channel) -> None:
         positions, quaternions = pickle.loads(asked)
         answer: Any
         try:
-            answer = backend.pairs(read_only(positions), read_only(quaternions))
+            # what is our own needs no such view, for which its kernels would be compiled anew
+            if not isinstance(backend, AtPoses):
+                positions, quaternions = read_only(positions), read_only(quaternions)
+            answer = backend.pairs(positions, quaternions)
             answer = require_pairs(name, answer, len(positions))
         except ContractError as error:
             answer = str(error)
