@@ -26,7 +26,16 @@ class Events(NamedTuple):
 
     @classmethod
     def of(cls, trace: Trace) -> Events:
-        """Those of a run, in arrays of one layout whatever the run keeps them in: kernels are compiled for each."""
-        return cls(
-            np.ascontiguousarray(trace.times), np.ascontiguousarray(trace.bodies), np.ascontiguousarray(trace.walls)
+        """Those of a run."""
+        return cls(trace.times, trace.bodies, trace.walls)
+
+    def in_one_layout(self) -> Events:
+        """The same in plain arrays, wherever they come from.
+
+        A kernel is compiled anew for parts of records, and for what may not be written to.
+        """
+        return Events(
+            np.require(self.times, requirements=["C", "W"]),
+            np.require(self.bodies, requirements=["C", "W"]),
+            np.require(self.walls, requirements=["C", "W"]),
         )

@@ -27,7 +27,8 @@ def positions_at(times: Floats, bodies: Bodies, events: Events, response: Respon
     """
     positions = np.empty((len(times), len(bodies), 3))
     origins, velocities = bodies.positions.copy(), bodies.velocities.copy()
-    _replay(times, events, origins, velocities, bodies.masses, response == "elastic", restitution, positions)
+    plain = events.in_one_layout()
+    _replay(times, plain, origins, velocities, bodies.masses, response == "elastic", restitution, positions)
     return positions
 
 
