@@ -260,7 +260,7 @@ def test_orientations_keep_their_digits_in_long_runs():
     bodies = scene.bodies
     bodies.velocities *= 1e-4
     simulation = fly(scene, np.inf, max_events=200)
-    body, clock = simulation._solid.body, simulation._world.tally.clock[0]
+    body, clock = simulation._solid.body, simulation._world.totals.clock[0]
     assert clock["epoch"] > 1e4
     for turn, spin, start in zip(body.turns, bodies.spins, bodies.quaternions, strict=True):
         with localcontext() as context:
