@@ -11,6 +11,8 @@ from harness.report.sweeps.difference import DRIFT, difference
 from harness.store.database import Database
 from harness.store.records import PointRow, VerdictRow
 
+LEAVES = {"backend": "fcl", "algorithm": "grid", "shape": "sphere"}
+
 NOISE = (1.0, 1.01, 0.99, 1.02, 0.98)
 CLAIM = {"metric": "run_seconds", "at_most": 3}
 
@@ -24,7 +26,9 @@ def results(tmp_path):
               control=1.01, repeats=5):  # fmt: skip
         with Database.open(path) as database:
             number = database.begin_sweep("harness sweep", None, "0.1.0", {"fingerprint": machine}, {})
-            points = [PointRow(f"{key}-{count}", {"count": count, "packing": count / 1e3}) for count in factors]
+            points = [
+                PointRow(f"{key}-{count}", LEAVES | {"count": count, "packing": count / 1e3}) for count in factors
+            ]
             specification = {"swept": ["count"], "claims": [CLAIM]}
             listed = database.list_experiment(number, "<b>", "T", None, "", specification, points)
             for repeat, noise in enumerate(NOISE[:repeats]):
