@@ -135,6 +135,10 @@ def _executor(arguments: argparse.Namespace) -> Executor | None:
     return Cluster(address)
 
 
+# s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
+_COMPARING = 45.0
+
+
 def _compare(
     experiments: Sequence[Experiment],
     meshes: Mapping[Path, Mesh],
@@ -152,6 +156,7 @@ def _compare(
     if not crosschecked:
         return []
     from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, kept, key_of, reductions
+    from harness.compare.budget import Budget
 
     done = set() if arguments.fresh else database.history.compared()
     lines = []
@@ -165,13 +170,16 @@ def _compare(
         asked = tuple(name for name in names if any(name in pair for pair in wanted))
         if not arguments.quiet:
             print(f"{experiment.name}: comparing {', '.join(asked)}", file=sys.stderr)
-        for pair, found in cross_check(experiment, meshes, asked, SWEPT):
+        budget = Budget(_COMPARING)
+        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget):
             if pair not in wanted:
                 continue
+            found.left_out += [line for line in budget.left_out if line not in found.left_out]
             rows = reductions(found, meshes, SHOWN)
             database.add_comparison(command, experiment.name, pair, keys[pair], kept(experiment, found, rows))
             real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
             lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
+        lines += [f"{experiment.name}: left out: {line}" for line in budget.left_out]
     return lines
 
 
