@@ -53,6 +53,14 @@ class Comparisons:
         return list(dict.fromkeys(lines))
 
     @cached_property
+    def left_out(self) -> list[str]:
+        """What was not asked, because the time for it was spent; databases of before it could be know nothing of it."""
+        lines = [
+            f"{record.experiment}: {line}" for record in self.records for line in record.document.get("left_out") or ()
+        ]
+        return list(dict.fromkeys(lines))
+
+    @cached_property
     def commands(self) -> list[str]:
         """How it was made."""
         return list(dict.fromkeys(record.command for record in self.records))
