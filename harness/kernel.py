@@ -33,9 +33,6 @@ def inner(function: Function) -> Function:
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 
-# Where kernels, and the constants that are compiled into them, stand.
-_ROOMS = ("broadphase", "measure", "methods", "motion", "narrowphase", "reference", "scene")
-
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
 # `nsz` concern divisions and the sign of zero.
 _RELAXED = {"contract", "arcp", "nsz"}
@@ -69,7 +66,7 @@ def _kept(function: Any, **options: Any) -> Any:
     """Compile, or load what was compiled before; nothing of either where numba is told not to compile."""
     if getattr(numba.config, "DISABLE_JIT", False):
         return function
-    with own_cache(_ROOMS) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
+    with own_cache(function.__module__) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
         made = _njit(cache=bool(folder), **options)(function)
         # where ours takes none, as on a full disk, numba turns to one that old code of ours may stand in
         if not folder or made._cache.cache_path.startswith(folder):

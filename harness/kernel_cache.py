@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
@@ -28,15 +29,15 @@ def user_cache() -> Path | None:
 
 
 @contextmanager
-def own_cache(rooms: Sequence[str]) -> Iterator[str]:
+def own_cache(module: str) -> Iterator[str]:
     """Keep what is compiled in a folder of these very sources.
 
     numba looks only at the file of a kernel to tell whether it is stale, and would go on running old code of another
-    file that was inlined into it.
+    file that was inlined into it. So a folder belongs to the sources of a module and of all that it imports.
 
     Parameters
     ----------
-    rooms : the packages in which kernels, and the constants that are compiled into them, stand
+    module : the name of the module in which the kernel stands
 
     Yields
     ------
@@ -45,7 +46,7 @@ def own_cache(rooms: Sequence[str]) -> Iterator[str]:
     """
     config: Any = numba.config
     theirs = config.CACHE_DIR
-    config.CACHE_DIR = theirs or _folder(tuple(rooms)) or ""
+    config.CACHE_DIR = theirs or _folder(module) or ""
     try:
         yield str(config.CACHE_DIR)
     finally:
@@ -76,19 +77,54 @@ def forgiving(dispatcher: Any) -> Any:
     return dispatcher
 
 
+# "from a.b import c, d", its names in brackets over several lines or not
+_IMPORT = re.compile(r"^[ \t]*from (harness[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+
+
 @cache
-def _folder(rooms: tuple[str, ...]) -> str | None:
+def _folder(module: str) -> str | None:
     sources = hashlib.sha256()
-    for file in [
-        PACKAGE / "kernel.py",
-        *(file for room in rooms for file in sorted((PACKAGE / room).rglob("*.py"))),
-    ]:
+    for file in sorted({PACKAGE / "kernel.py", *all_sources(module)}):
         sources.update(file.read_bytes())
     name = f"kernels-{sources.hexdigest()[:16]}"
     for folder in (PACKAGE / "__pycache__", user_cache()):
         if folder is not None and _takes_files(folder / name):
             return str(folder / name)
     return None
+
+
+def all_sources(module: str) -> set[Path]:
+    """The files of a module and of all in this package that it imports, over any number of steps.
+
+    A stranger's module may have inlined anything of this package.
+    """
+    if _source(module) is None:
+        return set(PACKAGE.rglob("*.py"))
+    found: set[Path] = set()
+    ahead = [module]
+    while ahead:
+        file = _source(ahead.pop())
+        if file is not None and file not in found:
+            found.add(file)
+            ahead += _imported(file)
+    return found
+
+
+@cache
+def _imported(file: Path) -> tuple[str, ...]:
+    """What a file imports of this package; a name may be a module or stand in one."""
+    names: list[str] = []
+    for package, listed in _IMPORT.findall(file.read_text(encoding="utf-8")):
+        names += [package, *(f"{package}.{name}" for name in re.findall(r"\w+", listed))]
+    return tuple(names)
+
+
+def _source(module: str) -> Path | None:
+    """The file of a module of this package."""
+    place = PACKAGE.joinpath(*module.split(".")[1:])
+    if not module.startswith(f"{PACKAGE.name}."):
+        return None
+    return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
 
 
 def _takes_files(folder: Path) -> bool:

@@ -7,7 +7,7 @@ import sys
 import numba
 import pytest
 
-from harness.kernel_cache import forgiving, user_cache
+from harness.kernel_cache import PACKAGE, all_sources, forgiving, user_cache
 
 KERNEL = """
 import sys
@@ -81,3 +81,15 @@ def test_a_user_without_a_home_has_no_cache(monkeypatch):
 
     monkeypatch.setattr("harness.kernel_cache.Path.home", homeless)
     assert user_cache() is None
+
+
+def test_a_folder_belongs_to_a_module_and_all_that_it_imports():
+    for module in ("harness.broadphase.grid", "harness.narrowphase.gap_pairs", "harness.motion.predictive.flight"):
+        program = f"import sys, {module}; print(*(m for m in sys.modules if m.startswith('harness.')))"
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+        imported = {PACKAGE.joinpath(*name.split(".")[1:]) for name in done.stdout.split()}
+        read = {file.parent if file.name == "__init__.py" else file.with_suffix("") for file in all_sources(module)}
+        # the packages on the way to a module hold no kernel
+        assert {place for place in imported if not place.is_dir()} <= read
+    assert PACKAGE / "broadphase" / "grid.py" not in all_sources("harness.narrowphase.gap_pairs")
+    assert all_sources("a_stranger") >= all_sources("harness.broadphase.grid") | all_sources("harness.motion.law")
