@@ -96,10 +96,11 @@ KNOBS = ("dt", "tolerance")
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
 
 
-def algorithms_of(backend: str) -> tuple[str, ...]:
+def algorithms_of(backend: str, query: Query = "collision") -> tuple[str, ...]:
     """The algorithms that a backend can be asked with, first the one that its name alone stands for.
 
-    One that is not of this program has its own detection only.
+    One that is not of this program has its own detection only. The one that answers single questions about pairs that
+    touch has its own way to gaps and to times, too.
 
     >>> algorithms_of("pybullet")
     ('native',)
@@ -107,7 +108,8 @@ def algorithms_of(backend: str) -> tuple[str, ...]:
     'brute-force'
     """
     own = backend == OWN_BACKEND
-    return tuple(name for name, word in ALGORITHMS.items() if word.own == own)
+    both = own and query != "collision"
+    return tuple(name for name, word in ALGORITHMS.items() if both or word.own == own)
 
 
 class MethodName(NamedTuple):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.experiment.messages import listed
-from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, OWN_BACKEND, QUERIES, Query, algorithms_of
+from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, QUERIES, Query, algorithms_of
 
 Values = Mapping[str, Any]
 
@@ -102,9 +102,7 @@ def frames_can_be_counted(values: Values) -> Conflict | None:
 
 def backend_has_the_algorithm(values: Values) -> Conflict | None:
     """fcl answers single questions, so that any algorithm can ask them; other backends bring their own detection."""
-    backend, algorithms = values["backend"], algorithms_of(values["backend"])
-    if values["query"] != "collision" and backend == OWN_BACKEND:
-        algorithms += ("native",)  # its own way to gaps and times; for pairs that touch it is asked by the others
+    backend, algorithms = values["backend"], algorithms_of(values["backend"], values["query"])
     if values["algorithm"] not in algorithms:
         message = f"backend {backend} has no algorithm {{}}, only {listed(algorithms)}"
         return Conflict(message, ("backend", "algorithm"), excludable=True)
