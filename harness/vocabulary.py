@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 Shape = Literal["sphere", "hull", "mesh"]
 """What the narrow phase sees of a body: its bounding sphere, its convex hull, or its surface of triangles."""
 
-Query = Literal["collision"]
-"""What is asked of a pair of bodies at a frame."""
+Query = Literal["collision", "tolerance", "distance", "impact"]
+"""What is asked of two bodies at a frame: whether they touch, are near, how far apart they are, when they meet."""
 
 Response = Literal["reflect", "elastic", "none"]
 """What a hit does: mirror each velocity along the line of centres, pass an impulse by mass, nothing."""
