@@ -15,7 +15,7 @@ from harness.arrays import Floats, Pairs
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepping import Detector, Stepping
-from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, of_meshes, two_bodies
 from harness.motion.law import MotionLaw
 from harness.motion.reach import all_at_rest, no_pair_can_meet, walls_are_out_of_reach
 from harness.scene.scene import Scene
@@ -78,9 +78,9 @@ class SteppedMethod(Method):
     def load(self, scene: Scene, plan: Plan) -> Pipeline:
         return Stepping(scene, plan, self.detector(scene, plan) if plan.keeps("pairs") else None)
 
-    def warm_ups(self) -> Iterator[WarmUp]:
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         shape: Shape = "sphere" if self.name.shape == "sphere" else "hull"
-        yield f"frames of {shape}s", partial(_fly_frames, shape)
+        yield f"frames of {shape}s{of_meshes(meshes)}", partial(_fly_frames, shape, meshes)
 
     def _motion(self, scene: Scene, decisions: Decisions) -> None:
         if not all_at_rest(scene):
@@ -192,9 +192,9 @@ class _AlwaysTouching:
         return TOUCHING
 
 
-def _fly_frames(shape: Shape) -> None:
+def _fly_frames(shape: Shape, meshes: int) -> None:
     """Two frames with every response; every stage that a detector is not asked for is kept."""
-    scene, dt = two_bodies(shape), 0.3
+    scene, dt = two_bodies(shape, meshes), 0.3
     for response in RESPONSES:
         law = MotionLaw(2 * dt, dt, response)
         decisions = Decisions()
