@@ -25,12 +25,13 @@ from harness.methods.stepped import decide_penetration, decide_recording
 from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
 from harness.motion.course import CourseLog
 from harness.motion.finite import require_finite_state
+from harness.motion.hit_states import HitStateLog
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.motion.predictive.initial import check
 from harness.motion.predictive.rules import LASTING, choose_search
-from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
+from harness.motion.predictive.simulation import EVENT, PAIR_EVENT, Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form, needs_its_surface
 from harness.scene.scene import Scene
@@ -160,6 +161,7 @@ class EventDriven:
         scene, plan, bodies = self._scene, self._plan, self._scene.bodies
         samples = _Samples(scene, plan, law)
         course = CourseLog(bodies.positions, bodies.velocities) if plan.keeps("recording") else None
+        states, events = HitStateLog(bodies.masses) if course and traced else None, []
         clock = Clock("run_seconds")
         simulation = self._start(law, record=traced or course is not None)
         clock.lap("run_seconds")
@@ -167,7 +169,10 @@ class EventDriven:
             clock.start()
             until = law.duration * sample / SAMPLES
             if course is not None:
-                course.follow(simulation, until)
+                for hit in course.follow(simulation, until):
+                    events.append(hit.event)
+                    if states is not None:
+                        states.add(hit.event["i"], hit.event["j"], hit.positions, hit.before, hit.after)
             else:
                 simulation.advance(until)
             clock.lap("run_seconds")
@@ -180,7 +185,10 @@ class EventDriven:
         if counted["events"]:
             metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
             metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
-        trace = _trace(scene, simulation, law.duration, counted) if traced else None
+        trace = None
+        if traced:
+            kept = np.array(events, EVENT) if course else simulation.take_events()
+            trace = _trace(scene, simulation, kept, states, law.duration, counted)
         return Outcome(metrics, trace, course.course() if course is not None else None)
 
     def _start(self, law: MotionLaw, *, record: bool) -> Simulation:
@@ -257,8 +265,14 @@ class _Depth:
         self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))
 
 
-def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:
-    events: Any = simulation.take_events()
+def _trace(
+    scene: Scene,
+    simulation: Simulation,
+    events: Any,
+    states: HitStateLog | None,
+    duration: float,
+    counted: dict[str, int],
+) -> Trace:
     pair = events["kind"] == PAIR_EVENT
     velocities = simulation.velocities
     return Trace(
@@ -270,6 +284,7 @@ def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[
         velocities=velocities,
         energy=energy(velocities, scene.bodies.masses),
         counters=counted,
+        states=None if states is None else states.states(),
     )
 
 

@@ -6,7 +6,9 @@ They are recorded only for a replay; the clocks of such a run include the record
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,6 +33,20 @@ class Course:
     bodies: Ints
     positions: Floats
     velocities: Floats
+
+
+class Hit(NamedTuple):
+    """A hit of a predictive simulation, and the state of all bodies.
+
+    event : of its type `EVENT`
+    positions : (n, 3) m, at its time
+    before, after : (n, 3) m/s
+    """
+
+    event: Any
+    positions: Floats
+    before: Floats
+    after: Floats
 
 
 class CourseLog:
@@ -68,14 +84,18 @@ class CourseLog:
         self._positions.append(positions.copy())
         self._speeds.append(velocities.copy())
 
-    def follow(self, simulation: Simulation, until: float) -> None:
-        """Fly a predictive simulation, which keeps its events, to `until` (s), a hit at a time."""
-        while not simulation.advance(until, max_events=1):
-            self.turn(simulation.time, simulation.positions, simulation.velocities)
-        velocities = simulation.velocities
-        if (velocities != self._velocities).any():  # the last hit, after which nothing was due before `until`
-            time = float(simulation.events["time"][-1])
-            self.turn(time, simulation.positions - velocities * (simulation.time - time), velocities)
+    def follow(self, simulation: Simulation, until: float) -> Iterator[Hit]:
+        """Fly a predictive simulation, which keeps its events, to `until` (s), and yield its hits one at a time."""
+        ended = False
+        while not ended:
+            ended = simulation.advance(until, max_events=1)
+            velocities = simulation.velocities
+            for event in simulation.take_events():  # one, or at the end perhaps none
+                # 0 s ago, except for the last hit, after which nothing was due before `until`
+                ago = simulation.time - float(event["time"])
+                hit = Hit(event, simulation.positions - velocities * ago, self._velocities.copy(), velocities)
+                self.turn(float(event["time"]), hit.positions, velocities)
+                yield hit
 
     def course(self) -> Course:
         """The legs recorded; of several of a body that begin at the same time, the last."""
