@@ -4,8 +4,8 @@ Stepped runs report the hits that were answered, at the time of their frame; wit
 contact, at the first frame that sees it.
 
 With --json or --csv also the state of each body of a hit: its position (m), its velocity before and after (m/s), and
-the impulse that it received (kg m/s). Of several walls met within a frame with `response: none`, each turns the component
-along its own normal.
+the impulse that it received (kg m/s). With `response: none`, a wall turns the component along its normal, whatever
+other walls were met in that frame.
 """
 
 from __future__ import annotations

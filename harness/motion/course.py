@@ -6,14 +6,12 @@ They are recorded only for a replay; the clocks of such a run include the record
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from harness.arrays import Floats, Ints
-from harness.motion.predictive.simulation import Simulation
+from harness.arrays import Floats, Ints, Pairs
+from harness.motion.hit_states import HitStates
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
@@ -33,20 +31,6 @@ class Course:
     bodies: Ints
     positions: Floats
     velocities: Floats
-
-
-class Hit(NamedTuple):
-    """A hit of a predictive simulation, and the state of all bodies.
-
-    event : of its type `EVENT`
-    positions : (n, 3) m, at its time
-    before, after : (n, 3) m/s
-    """
-
-    event: Any
-    positions: Floats
-    before: Floats
-    after: Floats
 
 
 class CourseLog:
@@ -84,18 +68,20 @@ class CourseLog:
         self._positions.append(positions.copy())
         self._speeds.append(velocities.copy())
 
-    def follow(self, simulation: Simulation, until: float) -> Iterator[Hit]:
-        """Fly a predictive simulation, which keeps its events, to `until` (s), and yield its hits one at a time."""
-        ended = False
-        while not ended:
-            ended = simulation.advance(until, max_events=1)
-            velocities = simulation.velocities
-            for event in simulation.take_events():  # one, or at the end perhaps none
-                # 0 s ago, except for the last hit, after which nothing was due before `until`
-                ago = simulation.time - float(event["time"])
-                hit = Hit(event, simulation.positions - velocities * ago, self._velocities.copy(), velocities)
-                self.turn(float(event["time"]), hit.positions, velocities)
-                yield hit
+    def add_hits(self, times: Floats, bodies: Pairs, states: HitStates) -> None:
+        """Begin a leg for every body that one of these hits, in order, has turned.
+
+        Parameters
+        ----------
+        times : (k,) float array, s
+        bodies : (k, 2) int array; the second is -1 where a wall was hit
+        states : HitStates of them
+        """
+        turned = (bodies >= 0) & (states.velocities_after != states.velocities_before).any(axis=2)
+        self._times.append(np.repeat(times, 2).reshape(-1, 2)[turned])
+        self._bodies.append(bodies[turned])
+        self._positions.append(states.positions[turned])
+        self._speeds.append(states.velocities_after[turned])
 
     def course(self) -> Course:
         """The legs recorded; of several of a body that begin at the same time, the last."""

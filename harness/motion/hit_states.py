@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -33,6 +33,24 @@ class HitStates:
         names = [field.name for field in fields(self)]
         for hit in zip(*(getattr(self, name).tolist() for name in names), strict=True):
             yield dict(zip(names, hit, strict=True))
+
+
+def states_of_events(records: Any, bodies: Pairs, masses: Floats) -> HitStates:
+    """The states of the events of a predictive simulation.
+
+    Parameters
+    ----------
+    records : (k,) array of its `EVENT_STATE`
+    bodies : (k, 2) int array; the second is -1 where a wall was hit
+    masses : (n,) float array, kg
+    """
+    flown = (records["now"][:, None] - records["time"])[:, :, None]
+    # most were brought to the time of the event, where 0 s are flown
+    positions = records["position"] + records["before"] * flown
+    impulses = masses[bodies][:, :, None] * (records["after"] - records["before"])
+    nobody = (bodies < 0)[:, :, None]
+    arrays = (positions, records["before"], records["after"], impulses)
+    return HitStates(*(np.where(nobody, np.nan, values) for values in arrays))
 
 
 class HitStateLog:
