@@ -14,7 +14,7 @@ from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, fcl_unit, size_ratio
 from harness.errors import InputError
 from harness.scene.mesh import has_area
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Shape
 
 
@@ -39,15 +39,15 @@ class Trimesh:
         self._unit = fcl_unit(scene.bodies.sizes)
         self._size_ratio = size_ratio(scene.bodies.sizes)
         self._manager = CollisionManager()
-        solids: dict[float, trimesh.Trimesh] = {}
-        for body, size in enumerate(scene.bodies.sizes.tolist()):
-            if size not in solids:
-                surface = scene.solid_of(size)
+        solids: dict[Solid, trimesh.Trimesh] = {}
+        for body, solid in enumerate(scene.solids):
+            if solid not in solids:
+                surface = scene.solid_of_body(body)
                 faces = surface.faces[has_area(*surface)] if scene.shape == "mesh" else surface.faces
-                solids[size] = trimesh.Trimesh(surface.vertices / self._unit, faces, process=False)
-                if scene.shape == "hull" and not solids[size].is_convex:
+                solids[solid] = trimesh.Trimesh(surface.vertices / self._unit, faces, process=False)
+                if scene.shape == "hull" and not solids[solid].is_convex:
                     raise InputError("it does not take this hull for convex, and would hold its surface only")
-            self._manager.add_object(body, solids[size])
+            self._manager.add_object(body, solids[solid])
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         if not (np.isfinite(positions).all() and np.isfinite(quaternions).all()):

@@ -56,18 +56,18 @@ class _Contact(NamedTuple):
     outward: Floats
 
 
-def hard_poses(shape: Shape, mesh: Mesh | None, every: int = 1) -> Iterator[PoseSet]:
+def hard_poses(shape: Shape, meshes: tuple[Mesh, ...], every: int = 1) -> Iterator[PoseSet]:
     """Pairs at first contact, deep inside each other, contained and concentric, of many sizes and far away.
 
     Parameters
     ----------
     shape : what the narrow phase is to see
-    mesh : None for spheres
+    meshes : of the first body and of the second, or of both
     every : of the first contacts, take every n-th
     """
     for number, (size, other, away) in enumerate(_SIZES_AND_DISTANCES):
         some = every if number == 0 or shape == "sphere" else max(every, _THINNED)
-        yield PoseSet(_two(shape, mesh, (size, other), away), partial(_poses, away=away, every=some), hard=True)
+        yield PoseSet(_two(shape, meshes, (size, other), away), partial(_poses, away=away, every=some), hard=True)
 
 
 def _poses(scene: Scene, away: float, every: int) -> tuple[Pose, ...]:
@@ -102,7 +102,7 @@ def _at_contact(
     """Two bodies by a feature of each, at one gap (of the smaller size) after another along the same normal."""
     sizes = scene.bodies.sizes.tolist()
     contact, other = (
-        _contact(_solid(scene, size), size, name, rng) for size, name in zip(sizes, features, strict=True)
+        _contact(_solid(scene, body), sizes[body], name, rng) for body, name in enumerate(features)
     )
     turned = _random_turn(rng)
     normal = _rotated(turned, contact.outward)
@@ -124,7 +124,7 @@ def _overlaps(sizes: tuple[float, float], away: float) -> Iterator[Pose]:
         yield Pose(f"centres {share:g} of the reach apart", np.array([centre, place]), turns)
 
 
-def _two(shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], away: float) -> Scene:
+def _two(shape: Shape, meshes: tuple[Mesh, ...], sizes: tuple[float, float], away: float) -> Scene:
     bodies = Bodies(
         positions=np.zeros((2, 3)),
         velocities=np.zeros((2, 3)),
@@ -133,12 +133,18 @@ def _two(shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], away: floa
         sizes=np.array(sizes),
         masses=np.array(sizes) ** 3,
     )
-    return Scene(shape, mesh, bodies, Box(np.full(3, away + 4 * sum(sizes))))
+    return Scene(
+        shape,
+        meshes,
+        bodies,
+        Box(np.full(3, away + 4 * sum(sizes))),
+        mesh_of=np.array([0, max(0, len(meshes) - 1)]),
+    )
 
 
-def _solid(scene: Scene, size: float) -> Surface | None:
-    """The hull of a body of this size, m; of a mesh too, since its hull is met first. None for a sphere."""
-    return None if scene.shape == "sphere" else replace(scene, shape="hull").solid_of(size)
+def _solid(scene: Scene, body: int) -> Surface | None:
+    """The hull of a body, m; of a mesh too, since its hull is met first. None for a sphere."""
+    return None if scene.shape == "sphere" else replace(scene, shape="hull").solid_of_body(body)
 
 
 def _contact(solid: Surface | None, size: float, feature: str, rng: np.random.Generator) -> _Contact:

@@ -126,4 +126,4 @@ def _at_rest(scene: Scene, pose: Pose, chosen: list[int]) -> Scene:
     sizes, masses = scene.bodies.sizes[chosen], scene.bodies.masses[chosen]
     still = np.zeros((len(chosen), 3))
     bodies = Bodies(pose.positions[chosen], still, pose.quaternions[chosen], still, sizes, masses)
-    return replace(scene, bodies=bodies, hulls={})
+    return replace(scene, bodies=bodies, hulls={}, mesh_of=scene.mesh_of[chosen])

@@ -60,7 +60,7 @@ def reversal_error(scene: Scene, end: Trace, fly: Fly) -> float:
 def relabelling_error(scene: Scene, end: Trace, fly: Fly) -> float:
     """Largest distance between where a body ends and where it ends with all bodies numbered backwards."""
     order = np.arange(len(scene.bodies))[::-1]
-    other = fly(replace(scene, bodies=_ordered(scene.bodies, order)), 1.0)
+    other = fly(replace(scene, bodies=_ordered(scene.bodies, order), mesh_of=scene.mesh_of[order]), 1.0)
     return _apart(other.positions[order], end.positions, scene)
 
 
@@ -77,8 +77,8 @@ def mirror_error(scene: Scene, end: Trace, fly: Fly) -> float:
         sizes=bodies.sizes,
         masses=bodies.masses,
     )
-    mesh = _mirrored(scene.mesh, flip) if scene.mesh and scene.shape != "sphere" else scene.mesh
-    other = fly(replace(scene, mesh=mesh, bodies=mirrored), 1.0)
+    meshes = tuple(_mirrored(mesh, flip) for mesh in scene.meshes) if scene.shape != "sphere" else scene.meshes
+    other = fly(replace(scene, meshes=meshes, bodies=mirrored), 1.0)
     return _apart(other.positions * flip, end.positions, scene)
 
 

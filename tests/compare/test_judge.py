@@ -18,7 +18,7 @@ def two(shape, offset, *, sizes=(1.0, 1.0), at=0.0, quaternions=None):
     positions = np.array([[at, 0.0, 0.0], [at, 0.0, 0.0]])
     positions[1] += offset
     bodies = make_bodies(positions, sizes=sizes, quaternions=quaternions)
-    return judge(Scene(shape, cube_mesh(), bodies, Box(np.full(3, 9.0))), 0, 1, bodies.positions, bodies.quaternions)
+    return judge(Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 9.0))), 0, 1, bodies.positions, bodies.quaternions)
 
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])

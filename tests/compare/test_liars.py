@@ -84,7 +84,7 @@ def test_a_contact_that_is_over_is_none():
     from tests.conftest import make_bodies
 
     bodies = make_bodies([[0, 0, 0], [0.01, 0.02, 4]], [[0, 0, 0], [0, 0, -1]], sizes=[3, 1])
-    scene = Scene("hull", cube_mesh(), bodies, Box(np.full(3, 60.0)))
+    scene = Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 60.0)))
     backend = registry.create("pybullet")
     backend.load(scene)
     poses = flown(scene, 800, 0.01).poses(scene)[1:]
