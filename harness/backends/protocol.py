@@ -161,7 +161,8 @@ def contained_is_touching(backend: Backend, shape: Shape) -> bool:
 def own_hulls(backend: Backend) -> Mapping[Solid, Hull]:
     """The hulls that a loaded backend holds in place of the scene's, in m, by what bodies share; else empty.
 
-    A backend has them as `own_hulls`, by the number of the mesh and the size, m; by the size alone if it knows one mesh.
+    A backend has them as `own_hulls`, by the number of the mesh and the size (m), or by the size alone if all bodies
+    have one mesh.
 
     A comparison gives them to the other backend too, so that both are asked about the same solids.
     """

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
+from itertools import pairwise
 from typing import Any
 
 from harness.backends.registry import packages
@@ -28,15 +28,16 @@ from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
 from harness.runner.scene_of_point import SceneSizeError, build_scene
-from harness.runner.servers import mesh_of
+from harness.runner.servers import files_of
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.scene.scene_files import Opened
 from harness.vocabulary import MethodName
 
 DEFAULT = ("fcl", "pybullet")
 
-Meshes = Mapping[Path, Mesh]
+Meshes = Opened
 
 
 @dataclass(frozen=True)
@@ -121,8 +122,7 @@ def cross_check(
 
 def reductions(found: Comparison, meshes: Meshes, most: int) -> list[Reduced]:
     """The cases of a comparison, the first `most` of every backend made smaller."""
-    names = {id(mesh): path.name for path, mesh in meshes.items()}
-    return reduced(found, names, most)
+    return reduced(found, {id(mesh): path.name for path, mesh in meshes.items()}, most)
 
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:
@@ -139,7 +139,7 @@ def key_of(
     experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent, budget: Budget | None = None
 ) -> str:
     """Of two comparisons with the same key the second would find nothing new."""
-    points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
+    points = sorted({point_key(point, files_of(experiment, point, meshes)) for point in experiment.points})
     limits = [budget.seconds, budget.every] if budget and (budget.seconds or budget.every > 1) else []
     content = json.dumps([points, pair, repr(extent), package_versions(packages()), *limits])
     return hashlib.sha256(content.encode()).hexdigest()
@@ -157,15 +157,26 @@ def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterat
         frames = None if scene is None else extent.frames(point, len(scene.bodies))
         if scene is not None and frames is not None:
             yield flown(scene, frames, point.motion.dt)
-    random = {(point.scene.shape, point.scene.mesh): point for point in experiment.points if point.scene.bodies is None}
+    random = {
+        (point.scene.shape, point.scene.mesh_names): point for point in experiment.points if point.scene.bodies is None
+    }
     for (shape, _), point in random.items():
-        yield from hard_poses(shape, mesh_of(experiment, point, meshes), extent.every)
+        for pair in _both(files_of(experiment, point, meshes).meshes):
+            yield from hard_poses(shape, pair, extent.every)
+
+
+def _both(meshes: tuple[Mesh, ...]) -> Iterator[tuple[Mesh, ...]]:
+    """The meshes of two bodies: of each mesh with itself, and with the next one, so that every kind has its turn."""
+    if not meshes:
+        yield ()
+    yield from ((mesh,) for mesh in meshes)
+    yield from pairwise(meshes)
 
 
 def _scene(experiment: Experiment, point: Point, meshes: Meshes) -> Scene | None:
     """The scene of a point; None where there is no pair."""
     try:
-        scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
+        scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)
     except (PlacementError, SceneSizeError) as error:
         raise InputError(f"{experiment.path}: {error}") from error
     return scene if len(scene.bodies) > 1 else None

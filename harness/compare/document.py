@@ -19,19 +19,19 @@ class Reduced:
     Parameters
     ----------
     small : the smallest scene that shows it; None where it depends on what was asked before
-    mesh : name of the mesh's file
+    meshes : names of the files of the meshes
     tried : whether it was tried to make it smaller
     """
 
     case: Case
     small: Case | None
-    mesh: str | None
+    meshes: tuple[str, ...]
     tried: bool = True
 
     @property
     def text(self) -> str | None:
         """The experiment that shows it by itself."""
-        return None if self.small is None else text_of(self.small, self.mesh)
+        return None if self.small is None else text_of(self.small, self.meshes)
 
     @property
     def name(self) -> str:
@@ -53,7 +53,8 @@ def reduced(found: Comparison, mesh_name: dict[int, str], most: int) -> list[Red
     for case in found.cases + found.shared:
         tried[case.wrong] = tried.get(case.wrong, 0) + 1
         now = tried[case.wrong] <= most
-        rows.append(Reduced(case, minimise(case) if now else None, mesh_name.get(id(case.scene.mesh)), now))
+        names = tuple(mesh_name.get(id(mesh), mesh.name) for mesh in case.scene.meshes)
+        rows.append(Reduced(case, minimise(case) if now else None, names, now))
     return rows
 
 
@@ -127,7 +128,7 @@ def shown_case(row: Reduced) -> dict[str, Any]:
         "section": cross_section(best),
         "minimised": small,
         "text": row.text,
-        "mesh": row.mesh,
+        "mesh": ", ".join(row.meshes) or None,
     }
 
 

@@ -101,9 +101,7 @@ def _at_contact(
 ) -> Iterator[Pose]:
     """Two bodies by a feature of each, at one gap (of the smaller size) after another along the same normal."""
     sizes = scene.bodies.sizes.tolist()
-    contact, other = (
-        _contact(_solid(scene, body), sizes[body], name, rng) for body, name in enumerate(features)
-    )
+    contact, other = (_contact(_solid(scene, body), sizes[body], name, rng) for body, name in enumerate(features))
     turned = _random_turn(rng)
     normal = _rotated(turned, contact.outward)
     against = _turn_onto(other.outward, -normal, rng.uniform(0, 2 * np.pi))

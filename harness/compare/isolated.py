@@ -25,7 +25,7 @@ from harness.compare.poses import Pose
 from harness.errors import InputError
 from harness.methods.at_poses import AtPoses
 from harness.scene.hull import Hull
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import MethodName, Shape
 
 ANSWER_SECONDS = 10.0
@@ -42,14 +42,14 @@ class Facts:
     ----------
     tolerance : of size; nearer contacts are not to be trusted
     approximated : by what it replaces the shape, if it does
-    hulls : those it holds in place of the scene's, by the size of a body
+    hulls : those it holds in place of the scene's, by what bodies share
     hulls_tolerance : of size, where those are taken as the truth
     solid : it says that of two bodies one inside the other touches, though the shape is a surface
     """
 
     tolerance: float
     approximated: str | None = None
-    hulls: Mapping[float, Hull] = field(default_factory=dict)
+    hulls: Mapping[Solid, Hull] = field(default_factory=dict)
     hulls_tolerance: float = 0.0
     solid: bool = False
 

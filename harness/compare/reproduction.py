@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 from harness.compare.outcome import Case
@@ -11,7 +12,7 @@ from harness.vocabulary import MethodName
 from harness.whole_file import write_whole
 
 
-def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
+def save(case: Case, folder: Path, name: str, meshes: Sequence[Path]) -> Path:
     """Write a case whose bodies are at rest at their poses.
 
     Parameters
@@ -19,7 +20,7 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
     case : Case
     folder : made if it is not there
     name : of the file, without suffix
-    mesh : the file of its mesh, which is copied beside the experiment
+    meshes : the files of its meshes, those that its bodies have of which are copied beside the experiment
 
     Returns
     -------
@@ -27,20 +28,21 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
         Of the experiment.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    if mesh is not None and not (folder / mesh.name).exists():
-        shutil.copyfile(mesh, folder / mesh.name)
+    for number in set(case.scene.mesh_of.tolist()) if meshes else ():
+        if not (folder / meshes[number].name).exists():
+            shutil.copyfile(meshes[number], folder / meshes[number].name)
     path = folder / f"{name}.yaml"
-    write_whole(path, text_of(case, mesh.name if mesh else None))
+    write_whole(path, text_of(case, [mesh.name for mesh in meshes]))
     return path
 
 
-def text_of(case: Case, mesh: str | None) -> str:
+def text_of(case: Case, meshes: Sequence[str]) -> str:
     """The experiment: its bodies rest, so that `harness compare` asks of this pose alone and `harness view` shows it.
 
     Parameters
     ----------
     case : Case
-    mesh : name of a mesh file that will lie beside the experiment
+    meshes : names of the files of its meshes, which will lie beside the experiment
     """
     scene, (i, j) = case.scene, case.bodies
     methods = [MethodName.read(name, scene.shape) for name in case.backends]
@@ -48,10 +50,16 @@ def text_of(case: Case, mesh: str | None) -> str:
     rows = zip(
         scene.bodies.positions.tolist(), scene.bodies.quaternions.tolist(), scene.bodies.sizes.tolist(), strict=True
     )
-    bodies = [{"position": at, "velocity": [0, 0, 0], "orientation": turned, "size": size} for at, turned, size in rows]
+    bodies: list[dict[str, object]] = [
+        {"position": at, "velocity": [0, 0, 0], "orientation": turned, "size": size} for at, turned, size in rows
+    ]
     declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": bodies}
-    if mesh is not None and scene.shape != "sphere":
-        declared["mesh"] = mesh
+    if meshes and scene.shape != "sphere":
+        named = [meshes[number] for number in scene.mesh_of.tolist()]
+        if len(set(named)) == 1:
+            declared["mesh"] = named[0]
+        else:
+            bodies[:] = [{"mesh": name, **body} for name, body in zip(named, bodies, strict=True)]
     verb = "are" if case.both_wrong else "is"
     state = "overlap" if case.judgement.touching else "do not touch"
     lines = {

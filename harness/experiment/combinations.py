@@ -78,8 +78,32 @@ def has_one_box(values: Values) -> Conflict | None:
 
 def has_a_mesh(values: Values) -> Conflict | None:
     """Only spheres need no mesh."""
-    if values["mesh"] is None and values["shape"] != "sphere":
+    own = values["bodies"] is not None and all(body.mesh is not None for body in values["bodies"])
+    if values["mesh"] is None and not own and values["shape"] != "sphere":
         return Conflict(f"shape {values['shape']} needs a mesh; only shape sphere does without", ("shape", "mesh"))
+    return None
+
+
+def native_sizes_have_a_mesh(values: Values) -> Conflict | None:
+    """A size that is read from a mesh needs one."""
+    if values["mesh"] is not None:
+        return None
+    bodies = values["bodies"]
+    native = values["size"].kind == "native" if bodies is None else any(
+        body.size == "native" and body.mesh is None for body in bodies
+    )  # fmt: skip
+    if native:
+        return Conflict("size native is that of a mesh, and there is none; mesh is {}", ("size", "mesh"))
+    return None
+
+
+def ignored_pairs_exist(values: Values) -> Conflict | None:
+    """A pair is of two bodies that there are."""
+    count = values["count"] if values["bodies"] is None else len(values["bodies"])
+    for i, j in values["ignore"]:
+        if i == j or max(i, j) >= (count or 0):
+            message = f"ignore names the pair [{i}, {j}], which is none of {count} bodies counted from 0"
+            return Conflict(message, ("bodies" if values["count"] is None else "count", "ignore"))
     return None
 
 
@@ -160,7 +184,13 @@ def bodies_pass_through(values: Values) -> Conflict | None:
     return None
 
 
-SCENE: tuple[Rule, ...] = (has_count_or_bodies, has_one_box, has_a_mesh)
+SCENE: tuple[Rule, ...] = (
+    has_count_or_bodies,
+    has_one_box,
+    has_a_mesh,
+    native_sizes_have_a_mesh,
+    ignored_pairs_exist,
+)
 MOTION: tuple[Rule, ...] = (restitution_has_an_effect, frames_can_be_counted)
 ENGINE: tuple[Rule, ...] = (
     backend_has_the_algorithm,

@@ -1,4 +1,7 @@
-"""A quantity that differs from body to body: a number, `{uniform: [low, high]}` or `{choice: [...]}`."""
+"""A quantity that differs from body to body: a number, `{uniform: [low, high]}` or `{choice: [...]}`.
+
+A size may be `native` too: that of the mesh in its file.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +34,10 @@ class Choice(BaseModel):
     choice: tuple[Number, ...] = Field(min_length=1, description="[value, value, ...]")
 
 
+NATIVE = "native"
+"""The size of a body whose mesh is as large as its file says, a unit of the file taken for a metre."""
+
+
 def _kind(value: Any) -> str | None:
     if isinstance(value, Uniform) or (isinstance(value, Mapping) and "uniform" in value):
         return "uniform"
@@ -38,13 +45,16 @@ def _kind(value: Any) -> str | None:
         return "choice"
     if isinstance(value, Mapping | list | tuple):
         return None
-    return "constant"
+    return NATIVE if value == NATIVE else "constant"
 
 
 class Distribution(
     RootModel[
         Annotated[
-            Annotated[Number, Tag("constant")] | Annotated[Uniform, Tag("uniform")] | Annotated[Choice, Tag("choice")],
+            Annotated[Number, Tag("constant")]
+            | Annotated[Uniform, Tag("uniform")]
+            | Annotated[Choice, Tag("choice")]
+            | Annotated[Literal["native"], Tag("native")],
             Discriminator(
                 _kind,
                 custom_error_type="said",
@@ -65,15 +75,19 @@ class Distribution(
     model_config = ConfigDict(frozen=True)
 
     @property
-    def kind(self) -> Literal["constant", "uniform", "choice"]:
-        """Which of the three it is."""
+    def kind(self) -> Literal["constant", "uniform", "choice", "native"]:
+        """Which of the four it is."""
+        if self.root == "native":
+            return "native"
         if isinstance(self.root, Uniform):
             return "uniform"
         return "choice" if isinstance(self.root, Choice) else "constant"
 
     @property
     def values(self) -> tuple[float, ...]:
-        """The one value, the low and the high one, or all that can be chosen."""
+        """The one value, the low and the high one, or all that can be chosen; none where the meshes say it."""
+        if isinstance(self.root, str):
+            return ()
         if isinstance(self.root, Uniform):
             return self.root.uniform
         return self.root.choice if isinstance(self.root, Choice) else (self.root,)
@@ -100,12 +114,14 @@ class Distribution(
 
 
 def _positive(distribution: Distribution) -> Distribution:
-    if min(distribution.values) <= 0:
+    if min(distribution.values, default=1.0) <= 0:
         raise wrong(f"must be greater than 0, not {shown(min(distribution.values))}")
     return distribution
 
 
 def _not_negative(distribution: Distribution) -> Distribution:
+    if distribution.kind == NATIVE:
+        raise wrong("must be a number, {uniform: [low, high]} or {choice: [value, ...]}; only a size can be native")
     if min(distribution.values) < 0:
         raise wrong(f"must be at least 0, not {shown(min(distribution.values))}")
     return distribution

@@ -237,7 +237,7 @@ def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> It
             if key not in made:
                 made[key] = model(**{leaf: point[leaf].value for leaf in model.model_fields})
             parts[section] = made[key]
-        shape: Shape = "sphere" if point["mesh"].value is None else most_exact
+        shape: Shape = most_exact if parts["scene"].mesh_names else "sphere"
         yield Point(**parts, reference=Reference(reference, shape) if reference else None)
 
 

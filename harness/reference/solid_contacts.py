@@ -109,7 +109,9 @@ class _Search:
     def _intervals(self, mesh: int, other_mesh: int, one: Motion, other: Motion, end: float) -> list[list[float]]:
         """The contacts of two motions of bodies of these meshes, from time 0 to an end (s)."""
         tolerance = self._tolerance
-        while (found := self._search(mesh, other_mesh, one, other, end, tolerance * (one.size + other.size) / 2.0)).stalled:
+        while (
+            found := self._search(mesh, other_mesh, one, other, end, tolerance * (one.size + other.size) / 2.0)
+        ).stalled:
             tolerance *= 10.0
             if tolerance > LARGEST_TOLERANCE:
                 raise InputError("the reference cannot follow a contact of these bodies; measure without a reference")

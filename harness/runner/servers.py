@@ -11,10 +11,8 @@ import socket
 import struct
 import subprocess
 import uuid
-from collections.abc import Mapping
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from pathlib import Path
 from time import monotonic
 from types import TracebackType
 from typing import Any
@@ -27,7 +25,7 @@ from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
 from harness.python_child import python_command
 from harness.runner.task import Report, Task
-from harness.scene.mesh import Mesh
+from harness.scene.scene_files import Opened, SceneFiles
 
 # One thread a run: threads of numerical libraries would make CPU time mean something else on every machine.
 _ONE_THREAD = dict.fromkeys(
@@ -72,27 +70,27 @@ class Servers:
         for server in list(self._servers.values()):
             server.hang_up()
 
-    def run(self, task: Task, mesh: Mesh | None) -> Report:
+    def run(self, task: Task, files: SceneFiles) -> Report:
         """Run a task once in a process of its own; it never raises for what the run does.
 
         Parameters
         ----------
         task : what to run
-        mesh : that it names
+        files : that its scene names
         """
         backend = task.point.engine.backend
         interruptions = self._interruptions
         for tried in range(1, _TRIES + 1):
             if backend in self._broken:
                 return self._broken[backend]
-            report = self._try(backend, task, mesh, last=tried == _TRIES)
+            report = self._try(backend, task, files, last=tried == _TRIES)
             if report is not None:
                 return report
             if self._interruptions > interruptions:
                 break
         return Report("crashed", f'the server of backend "{backend}" ended unexpectedly')
 
-    def _try(self, backend: str, task: Task, mesh: Mesh | None, *, last: bool) -> Report | None:
+    def _try(self, backend: str, task: Task, files: SceneFiles, *, last: bool) -> Report | None:
         """The report of a task; None if the server died over it."""
         if backend not in self._servers:
             server = _Server(backend)
@@ -104,7 +102,7 @@ class Servers:
                     return None
                 self._broken[backend] = broken
                 return broken
-        report = self._servers[backend].run(task, mesh)
+        report = self._servers[backend].run(task, files)
         if report is None:
             self._servers.pop(backend).close()
         return report
@@ -113,21 +111,21 @@ class Servers:
 def task_of(
     experiment: Experiment,
     point: Point,
-    meshes: Mapping[Path, Mesh],
+    meshes: Opened,
     *,
     traced: bool = False,
     pinned: bool = False,
     recorded: bool = False,
     on_demand: frozenset[str] | None = None,
-) -> tuple[Task, Mesh | None]:
-    """A run of a point under the limits of its experiment, and the mesh that it needs.
+) -> tuple[Task, SceneFiles]:
+    """A run of a point under the limits of its experiment, and the files that it needs.
 
     `on_demand` are the metrics to measure that are measured on demand alone; without, those the experiment names.
     """
-    mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
+    files, limits = files_of(experiment, point, meshes), experiment.measure
     on_demand = on_demand_of(experiment) if on_demand is None else on_demand
-    digest = mesh.digest if mesh else None
-    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, on_demand), mesh
+    task = Task(point, files.digests, limits.timeout, limits.memory, traced, pinned, recorded, on_demand)
+    return task, files
 
 
 def on_demand_of(experiment: Experiment) -> frozenset[str]:
@@ -135,9 +133,10 @@ def on_demand_of(experiment: Experiment) -> frozenset[str]:
     return experiment.metrics & ON_DEMAND
 
 
-def mesh_of(experiment: Experiment, point: Point, meshes: Mapping[Path, Mesh]) -> Mesh | None:
-    """The mesh that a point of an experiment names, if it names one."""
-    return None if point.scene.mesh is None else meshes[experiment.mesh_paths[point.scene.mesh]]
+def files_of(experiment: Experiment, point: Point, opened: Opened) -> SceneFiles:
+    """The files that a point of an experiment names."""
+    paths = [experiment.mesh_paths[name] for name in point.scene.mesh_names]
+    return SceneFiles.of(tuple(opened[path] for path in paths))
 
 
 class _Server:
@@ -187,12 +186,13 @@ class _Server:
         self._ready = True
         return None
 
-    def run(self, task: Task, mesh: Mesh | None) -> Report | None:
+    def run(self, task: Task, files: SceneFiles) -> Report | None:
         """The report of a task; None if the server has died, or is silent."""
         try:
-            if mesh is not None and mesh.digest not in self._sent:
-                self._channel.send(mesh)
-                self._sent.add(mesh.digest)
+            for part in files.parts:
+                if part.digest not in self._sent:
+                    self._channel.send(part)
+                    self._sent.add(part.digest)
             self._channel.send(task)
             self._receive(_WARM_UP)
             report: Report = self._receive(task.timeout + _BEYOND)

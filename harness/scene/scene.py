@@ -32,6 +32,7 @@ class Scene:
     hulls : by what bodies share, its hull in m, where it replaces that of the mesh: in a comparison every backend then
         gets the hull that one of them has made
     mesh_of : (n,) int array, the number of each body's mesh; all have the first if it is left out
+    ignored : (k, 2) int array, pairs i < j that are never asked about, sorted, each once
     """
 
     shape: Shape
@@ -40,6 +41,7 @@ class Scene:
     box: Box
     hulls: Mapping[Solid, Hull] = field(default_factory=dict)
     mesh_of: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    ignored: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
 
     def __post_init__(self) -> None:
         if not self.meshes and self.shape != "sphere":

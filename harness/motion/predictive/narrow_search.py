@@ -74,7 +74,13 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     face = 2 * axis + (1 if world.spheres.motions[k].velocity[axis] > 0.0 else 0)
     flight = motion_of(body, world.spheres.motions, k, now)
     found = time_of_wall_impact(
-        shape_of(body.shapes, k).hull, flight, face, body.scale * rules.half_box[axis], 0.0, 1e300, body.tolerance * flight.size
+        shape_of(body.shapes, k).hull,
+        flight,
+        face,
+        body.scale * rules.half_box[axis],
+        0.0,
+        1e300,
+        body.tolerance * flight.size,
     )
     counts.box_tests += 1
     counts.advancement_steps += found.steps
