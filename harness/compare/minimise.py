@@ -126,4 +126,7 @@ def _at_rest(scene: Scene, pose: Pose, chosen: list[int]) -> Scene:
     sizes, masses = scene.bodies.sizes[chosen], scene.bodies.masses[chosen]
     still = np.zeros((len(chosen), 3))
     bodies = Bodies(pose.positions[chosen], still, pose.quaternions[chosen], still, sizes, masses)
-    return replace(scene, bodies=bodies, hulls={}, mesh_of=scene.mesh_of[chosen])
+    places = {body: place for place, body in enumerate(chosen)}
+    ignored = [(places[i], places[j]) for i, j in scene.ignored.tolist() if i in places and j in places]
+    pairs = np.array(ignored, np.int64).reshape(-1, 2)
+    return replace(scene, bodies=bodies, hulls={}, mesh_of=scene.mesh_of[chosen], ignored=pairs)

@@ -47,6 +47,7 @@ class PairAudit:
 
     def __init__(self, names: NamePair, scene: Scene, facts: tuple[Facts, Facts], *, flown: bool) -> None:
         self._names, self._scene, self._facts, self._flown = names, scene, facts, flown
+        self._ignored = _as_set(scene.ignored)
         self._tally, self._gaps = Tally(names, scene.shape), GapHistogram(names, scene.shape)
         self._checked = CheckedAgreement(names, scene.shape)
         self._approximation = _approximation(names, scene, facts) if flown else None
@@ -68,7 +69,8 @@ class PairAudit:
         """
         count = len(self._scene.bodies)
         pairs = count * (count - 1) // 2
-        first, second = (_as_set(answer) for answer in answers)
+        pairs -= len(self._ignored)
+        first, second = (_as_set(answer) - self._ignored for answer in answers)
         differing = sorted(first ^ second)
         self._tally.poses += 1
         self._tally.verdicts += pairs
@@ -94,7 +96,7 @@ class PairAudit:
         """Judge one of the verdicts that both agree on, at every n-th query."""
         every = _HARD_CHECKED if not self._flown else _MESHES_CHECKED if self._scene.shape == "mesh" else 1
         pair = _near_pair(self._scene, truths.pose, query_index) if (query_index - 1) % every == 0 else None
-        if pair is None or (pair in first) != (pair in second):
+        if pair is None or pair in self._ignored or (pair in first) != (pair in second):
             return
         self._checked.verdicts += 1
         if truths.touch(pair) == (pair in first):

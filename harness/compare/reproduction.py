@@ -54,6 +54,8 @@ def text_of(case: Case, meshes: Sequence[str]) -> str:
         {"position": at, "velocity": [0, 0, 0], "orientation": turned, "size": size} for at, turned, size in rows
     ]
     declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": bodies}
+    if len(scene.ignored):
+        declared["ignore"] = scene.ignored.tolist()
     if meshes and scene.shape != "sphere":
         named = [meshes[number] for number in scene.mesh_of.tolist()]
         if len(set(named)) == 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from harness.backends import registry
+from harness.backends.all_but_ignored import AllButIgnored
 from harness.backends.protocol import Backend
 from harness.backends.statement import approximation
 from harness.errors import InputError
@@ -31,7 +32,7 @@ class Native(SteppedMethod):
         if scene.shape not in backend.shapes:
             raise InputError(f'backend "{backend.name}" has no shape {scene.shape}, only {", ".join(backend.shapes)}')
         backend.load(scene)
-        return backend
+        return AllButIgnored(backend, scene.ignored) if len(scene.ignored) else backend
 
 
 METHOD = Native

@@ -112,20 +112,23 @@ def _begins(parts: Sequence[tuple[NDArray[Any], ...]]) -> Ints:
 
 def hull_of(hulls: Hulls, body: int) -> SupportMap:
     """The hull of a body."""
-    return _hull_among(hulls, body) if isinstance(hulls, SupportMaps) else hulls
+    found: SupportMap = _hull_among(hulls, body) if isinstance(hulls, SupportMaps) else hulls
+    return found
 
 
 def tree_of(trees: Surfaces, body: int) -> TriangleTree:
     """The tree of triangles of a body."""
-    return _tree_among(trees, body) if isinstance(trees, TriangleTrees) else trees
+    found: TriangleTree = _tree_among(trees, body) if isinstance(trees, TriangleTrees) else trees
+    return found
 
 
 def shape_of(shapes: Shapes, body: int) -> MeshShape:
     """The surface of a body."""
-    return _shape_among(shapes, body) if isinstance(shapes, MeshShapes) else shapes
+    found: MeshShape = _shape_among(shapes, body) if isinstance(shapes, MeshShapes) else shapes
+    return found
 
 
-def _hull_among(hulls: SupportMaps, body: int) -> SupportMap:
+def _hull_among(hulls: Any, body: int) -> Any:
     mesh = hulls.mesh_of[body]
     here, end = hulls.begins[mesh], hulls.begins[mesh + 1]
     return SupportMap(
@@ -136,7 +139,7 @@ def _hull_among(hulls: SupportMaps, body: int) -> SupportMap:
     )
 
 
-def _tree_among(trees: TriangleTrees, body: int) -> TriangleTree:
+def _tree_among(trees: Any, body: int) -> Any:
     mesh = trees.mesh_of[body]
     here, end = trees.begins[mesh], trees.begins[mesh + 1]
     return TriangleTree(
@@ -147,7 +150,7 @@ def _tree_among(trees: TriangleTrees, body: int) -> TriangleTree:
     )
 
 
-def _shape_among(shapes: MeshShapes, body: int) -> MeshShape:
+def _shape_among(shapes: Any, body: int) -> Any:
     return MeshShape(hull_of(shapes.hulls, body), tree_of(shapes.trees, body), shapes.radius)
 
 
@@ -156,17 +159,17 @@ def _the_only(shapes: Any, body: int) -> Any:
 
 
 @overload(hull_of, inline="always")
-def _compiled_hull_of(hulls: Any, body: Any) -> Any:
+def _compiled_hull_of(hulls: Any, body: int) -> Any:
     return _hull_among if hulls.instance_class is SupportMaps else _the_only_hull
 
 
 @overload(tree_of, inline="always")
-def _compiled_tree_of(trees: Any, body: Any) -> Any:
+def _compiled_tree_of(trees: Any, body: int) -> Any:
     return _tree_among if trees.instance_class is TriangleTrees else _the_only_tree
 
 
 @overload(shape_of, inline="always")
-def _compiled_shape_of(shapes: Any, body: Any) -> Any:
+def _compiled_shape_of(shapes: Any, body: int) -> Any:
     return _shape_among if shapes.instance_class is MeshShapes else _the_only
 
 

@@ -42,7 +42,7 @@ def record(text: str) -> Recording:
     experiment = load_text(text, Path("browser.yaml"))
     point = experiment.points[0]
     files = files_of(experiment, point, open_all(experiment.mesh_paths.values()))
-    recording = execute(point, mesh, recorded=True).recording
+    recording = execute(point, files, recorded=True).recording
     assert recording is not None
     return recording
 

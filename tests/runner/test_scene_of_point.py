@@ -41,7 +41,7 @@ def test_drawn_values_lie_in_their_ranges(spheres):
 @pytest.mark.parametrize(("ratio", "side"), [("1/100", 10), ("1/25", 5), ("1/4", 2)])
 def test_the_box_ratio_is_the_square_of_size_over_side(spheres, ratio, side):
     experiment = spheres(box_ratio=ratio, overlap="allow")
-    assert box_of(experiment.points[0]).sides == pytest.approx([side] * 3)
+    assert box_of(experiment.points[0], SceneFiles()).sides == pytest.approx([side] * 3)
 
 
 def test_derived_parameters_are_those_of_the_scene(spheres):

@@ -43,7 +43,7 @@ def flown(name):
         files = files_of(experiment, point, meshes)
         status, reason, metrics = "ok", None, {}
         try:
-            metrics = execute(point, mesh, on_demand=on_demand_of(experiment)).metrics
+            metrics = execute(point, files, on_demand=on_demand_of(experiment)).metrics
         except (PlacementError, InputError) as error:
             status, reason = "rejected", str(error)
         parameters = {**point.parameters, **derived_parameters(point, files)}

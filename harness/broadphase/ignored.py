@@ -1,0 +1,54 @@
+"""Pairs that are never asked about, such as the neighbouring links of a robot."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from harness.arrays import Flags, Pairs
+from harness.broadphase.pairs import BroadPhase
+
+
+def kept(pairs: Pairs, ignored: Pairs) -> Flags:
+    """Which pairs are not ignored, (k,).
+
+    Parameters
+    ----------
+    pairs : (k, 2) int array, i < j
+    ignored : (m, 2) int array, i < j, sorted
+
+    >>> kept(np.array([[0, 1], [0, 2]]), np.array([[0, 1]])).tolist()
+    [False, True]
+    """
+    flags: Flags = ~np.isin(pairs[:, 0] << 32 | pairs[:, 1], ignored[:, 0] << 32 | ignored[:, 1])
+    return flags
+
+
+def without(pairs: Pairs, ignored: Pairs) -> Pairs:
+    """The pairs that are not ignored; parameters as for `kept`."""
+    return pairs[kept(pairs, ignored)] if len(ignored) else pairs
+
+
+class WithoutIgnored:
+    """A broad phase whose close pairs are those that are not ignored.
+
+    Parameters
+    ----------
+    broad_phase : BroadPhase
+    ignored : (m, 2) int array, i < j, sorted
+
+    Attributes
+    ----------
+    pair_tests : pairs put to the sphere test so far; one that is ignored may be among them
+    """
+
+    def __init__(self, broad_phase: BroadPhase, ignored: Pairs) -> None:
+        self._broad_phase, self._ignored, self.pair_tests = broad_phase, ignored, 0
+        if hasattr(broad_phase, "cells_per_body"):
+            self.cells_per_body = broad_phase.cells_per_body
+
+    def close_pairs(self, positions: ArrayLike) -> Pairs:
+        """As `BroadPhase.close_pairs`, less the ignored."""
+        close = self._broad_phase.close_pairs(positions)
+        self.pair_tests = self._broad_phase.pair_tests
+        return without(close, self._ignored)
