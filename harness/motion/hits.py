@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
+from harness.motion.answers import NearAnswers
 from harness.motion.course import Course
 from harness.vocabulary import WALLS
 
@@ -86,8 +87,9 @@ class Trace:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a motion reports: metrics by name, and a trace and a course if they were asked for."""
+    """What a motion reports: metrics by name, and a trace, a course and the answers to its query if asked for."""
 
     metrics: dict[str, float]
     trace: Trace | None
     course: Course | None = None
+    answers: NearAnswers | None = None

@@ -5,6 +5,7 @@ from harness.measure.metric import Metric, counter
 METRICS = (
     Metric("frames", "1", "count", "frames stepped: round(duration / dt)", better="neither", exact=True),
     counter("pair_tests", "pairs of bodies put to any test beyond bookkeeping", "object/object tests"),
+    counter("near_pairs", "pairs whose gap is at most `within`, counted in every frame", kind="physics"),
     counter("narrow_tests", "pairs of bodies put to the exact shape", "object/object tests on the exact shape"),
     counter("hull_tests", "pairs of meshes whose hulls were put to a separating axis", tabulated=False),
     counter(
