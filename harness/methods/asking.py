@@ -236,4 +236,5 @@ def _trace(scene: Scene, flight: _Flight, end: float, counted: Mapping[str, floa
         velocities=velocities,
         energy=energy(velocities, scene.bodies.masses),
         counters=counted,
+        near=flight.log is not None,
     )

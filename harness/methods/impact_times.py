@@ -10,7 +10,6 @@ import numpy as np
 from harness.arrays import Floats, Ints
 from harness.backends.protocol import ImpactTimes
 from harness.broadphase.pairs import BroadPhase
-from harness.errors import InputError
 from harness.methods.narrow_phase import hull_of_size_1
 from harness.narrowphase.frame_flights import FrameFlights
 from harness.narrowphase.gjk import MARGIN
@@ -77,11 +76,6 @@ class KernelImpacts:
     scene : Scene
     broad_phase : makes one for spheres of these radii (n,) m
     tolerance : of the mean size of a pair, the gap at which hulls and surfaces count as touching
-
-    Raises
-    ------
-    InputError
-        By `impacts`, if a contact cannot be followed even at a coarser tolerance.
     """
 
     def __init__(self, scene: Scene, broad_phase: Callable[[Floats], BroadPhase], tolerance: float) -> None:
@@ -89,14 +83,16 @@ class KernelImpacts:
         self._room = scene.box.half - scene.bodies.radii[:, None]
         self._speeds = np.linalg.norm(scene.bodies.velocities, axis=1)
         self._search, self._reach = _search_of(scene)
-        self._tests = 0
+        self._tests = self._given_up = 0
+        self._spheres = scene.shape == "sphere"
 
     @property
     def counters(self) -> dict[str, float]:
-        return {"pair_tests": self._broad_phase.pair_tests, "narrow_tests": self._tests}
+        tests: dict[str, float] = {"pair_tests": self._broad_phase.pair_tests, "narrow_tests": self._tests}
+        return tests if self._spheres else {**tests, "unfollowed_contacts": self._given_up}
 
     def begin(self, duration: float) -> None:
-        self._duration, self._tests = duration, 0
+        self._duration, self._tests, self._given_up = duration, 0, 0
         self._touching: Ints = np.empty(0, np.int64)
         sizes = self._scene.bodies.sizes
         # a folded path is never farther from its middle than its speed allows
@@ -124,8 +120,7 @@ class KernelImpacts:
         if count.onsets > len(found.pairs):  # count first, then make room: rare, as the room is kept
             found = self._found = onsets_of(len(close), 2 * count.onsets)
             count = self._search(asked, flights, found)
-        if count.given_up:
-            raise InputError("a contact of these bodies cannot be followed; raise tolerance")
+        self._given_up += count.given_up
         still = close[found.touching]
         self._touching = still[:, 0] << 32 | still[:, 1]
         return ImpactTimes(close[found.pairs[: count.onsets]], found.times[: count.onsets].copy())

@@ -57,6 +57,7 @@ class Trace:
     positions, velocities : (n, 3) float arrays at that time, m and m/s
     energy : J, translational, at that time
     counters : of the run
+    near : whether a pair's event is that it came near, which is not asked whether they touch
     """
 
     times: Floats
@@ -67,13 +68,14 @@ class Trace:
     velocities: Floats
     energy: float
     counters: Mapping[str, float]
+    near: bool = False
 
     def to_json(self) -> dict[str, Any]:
         """The document that `harness trace --json` prints."""
         events: list[dict[str, Any]] = []
         for time, (i, j), wall in zip(self.times.tolist(), self.bodies.tolist(), self.walls.tolist(), strict=True):
             if wall < 0:
-                events.append({"time": time, "kind": "pair", "bodies": [i, j]})
+                events.append({"time": time, "kind": "near" if self.near else "pair", "bodies": [i, j]})
             else:
                 events.append({"time": time, "kind": "wall", "bodies": [i], "wall": WALLS[wall]})
         final = {

@@ -28,12 +28,13 @@ from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.motion_impacts import near_impact
 from harness.narrowphase.spheres import passage
 from harness.narrowphase.support import SupportMap
+from harness.narrowphase.vectors import dot, minus
 from harness.narrowphase.verdicts import SearchVerdict
 
 Shape = TypeVar("Shape")
 
-# By how much a search that was given up is done again, and how often.
-COARSER, MOST_COARSER = 10.0, 4
+# By how much the tolerance of a search that was given up is raised before it is done again, and how many are done.
+COARSER, MOST_SEARCHES = 10.0, 3
 
 
 class PairsAsked(NamedTuple):
@@ -160,9 +161,13 @@ def again_if_unknown(
     found: Onsets,
     in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
 ) -> Followed:
-    """A pair through a piece, and once more at a larger tolerance where a search is given up."""
+    """A pair through a piece, and again at a larger tolerance where a search is given up.
+
+    One whose end is not known even then is taken to touch through the piece: coplanar faces that slide over each other
+    neither cross nor come apart.
+    """
     after = Followed(before.touches, before.onsets, True)
-    for _ in range(MOST_COARSER):
+    for _ in range(MOST_SEARCHES):
         after = in_piece(shape, a, b, piece, before, k, found)
         if after.known:
             break
@@ -175,14 +180,14 @@ def spheres_in_piece(
     nothing: int, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
 ) -> Followed:
     """Spheres touch once in a straight piece, from a root of a quadratic to the next."""
-    gap = b.position[0] - a.position[0], b.position[1] - a.position[1], b.position[2] - a.position[2]
-    drift = b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1], b.velocity[2] - a.velocity[2]
+    gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
     met = passage(gap, drift, 0.5 * (a.size + b.size))
     if not (met.enter <= piece.length and met.leave >= 0.0):
         return Followed(False, before.onsets, True)
     count = before.onsets
-    # what touches at the start of a piece touched at the end of the last one, up to rounding
-    if not before.touches and not (piece.settled and met.enter <= 0.0):
+    # what touches at the start has been noted, unless rounding has put its beginning off until now: then it approaches
+    begins = met.enter > 0.0 or (not piece.settled and dot(gap, drift) < 0.0)
+    if begins and not before.touches:
         count = noted(found, count, k, piece.begin + max(met.enter, 0.0))
     return Followed(met.leave >= piece.length, count, True)
 

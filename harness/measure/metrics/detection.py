@@ -16,6 +16,10 @@ METRICS = (
         "contained_pairs", "pairs of which one mesh was wholly inside the other, which is no hit",
         kind="physics", tabulated=False,
     ),
+    counter(
+        "unfollowed_contacts", "contacts whose end could not be proved within a frame, taken to last through it",
+        tabulated=False,
+    ),
     counter("box_tests", "tests of a body against one of the six walls", "object/wall tests"),
     counter("pair_tests_per_body", "pair_tests / (frames · bodies), of a stepped run", tabulated=False),
     counter(
