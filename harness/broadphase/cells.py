@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
-from harness.broadphase.pairs import Keys, require_finite, touching
+from harness.broadphase.lanes import LANES, lanes_within, lowest_bit
+from harness.broadphase.pairs import NEARLY, Keys, require_finite, touching
 from harness.kernel import inner, kernel
 
 Ints = NDArray[np.int32]
@@ -44,30 +45,40 @@ SLACK = 1e-6
 """Relative surplus of a cell over its largest body: more than rounding can do to fewer than 1e9 cells along an axis."""
 
 
+GATHERED = 256
+"""Bodies whose places are gathered at a time. A loop that does nothing else keeps many reads of memory under way."""
+
+RUNS = 5
+"""Of three cells along z, with whose bodies one of the same level is compared: its own, and four later neighbours."""
+
+
 class Cells(NamedTuple):
-    """The bodies of a frame, sorted by cell. A slot is a body's place in the order by level, then cell, then number.
+    """The bodies of a frame, sorted by cell. A slot is a body's place in the order by level, then cell.
 
     Attributes
     ----------
-    radii : (n,) m
-    members : (n,) the bodies by level, each level's in ascending order
+    members : (n,) the bodies by level, each level's as they were sorted in the last frame: those that are near each
+        other in the box then are near each other in memory. Rewritten
     levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written every frame
     start : (sum of budgets + 1,) written: the first slot of each cell
     cell_of : (n,) written: each member's cell
+    places : (n, 4) written: each member's x, y, z and radius, m
     slots : (n, 2) written: each slot's cell and body
-    spheres : (n, 4) written: each slot's x, y, z and radius, m
+    spheres : (n, 4) rewritten: each slot's x, y, z and radius, m
+    columns : (3, n + LANES) written: each slot's x, y and z once more, m, to be compared several at once
     """
 
-    radii: Floats
     members: Ints
     levels: Levels
     start: Ints
     cell_of: Ints
+    places: Floats
     slots: Ints
     spheres: Floats
+    columns: Floats
 
 
-Arrays = tuple[Floats, Ints, Levels, Ints, Ints, Ints, Floats]
+Arrays = tuple[Ints, Levels, Ints, Ints, Floats, Ints, Floats, Floats]
 
 
 class Found(NamedTuple):
@@ -122,9 +133,15 @@ def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
 
     Bodies beyond the walls belong to the border cells, so that one that has shot far out does not thin out the lattice.
     """
-    x, wide = span(positions[:, 0], half[0])
-    y, deep = span(positions[:, 1], half[1])
-    z, tall = span(positions[:, 2], half[2])
+    low_x, low_y, low_z = half[0], half[1], half[2]
+    high_x, high_y, high_z = -half[0], -half[1], -half[2]
+    for i in range(len(positions)):
+        x, y, z = positions[i, 0], positions[i, 1], positions[i, 2]
+        low_x, low_y, low_z = min(low_x, x), min(low_y, y), min(low_z, z)
+        high_x, high_y, high_z = max(high_x, x), max(high_y, y), max(high_z, z)
+    x, wide = within_box(low_x, high_x, half[0])
+    y, deep = within_box(low_y, high_y, half[1])
+    z, tall = within_box(low_z, high_z, half[2])
     first = 0
     for index in range(len(levels)):
         level = levels[index]
@@ -136,11 +153,17 @@ def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
 
 @kernel
 def span(coordinates: Floats, half: float) -> tuple[float, float]:
-    """Where the bodies begin along an axis of the box, m, and over which length they spread."""
+    """Where bodies begin along an axis of the box, m, and over which length they spread."""
     low, high = half, -half
     for i in range(len(coordinates)):
         low = min(low, coordinates[i])
         high = max(high, coordinates[i])
+    return within_box(low, high, half)
+
+
+@kernel
+def within_box(low: float, high: float, half: float) -> tuple[float, float]:
+    """Where an interval begins along an axis of the box, m, and how long it is there."""
     low = max(low, -half)
     return low, max(0.0, min(high, half) - low)
 
@@ -201,48 +224,83 @@ def block_around(level: Level, x: float, y: float, z: float, reach: float) -> Bl
 @kernel
 def sort_by_cell(positions: Floats, cells: Cells) -> None:
     """Counting sort: count the bodies of each cell, sum up to each cell's end, fill each cell from its end."""
-    radii, members, levels, start, cell_of, slots, spheres = cells
+    members, levels, start, cell_of, places, slots, spheres, columns = cells
     used = levels[-1].first + levels[-1].cells
     start[: used + 1] = 0
     for index in range(len(levels)):
         level = levels[index]
-        for member in range(level.begin, level.end):
-            i = members[member]
-            cell = cell_at(level, positions[i, 0], positions[i, 1], positions[i, 2])
-            cell_of[member] = cell
-            start[cell] += 1
+        for begin in range(level.begin, level.end, GATHERED):
+            end = min(begin + GATHERED, level.end)
+            gather(positions, cells, begin, end)
+            for member in range(begin, end):
+                cell = cell_at(level, places[member, 0], places[member, 1], places[member, 2])
+                cell_of[member] = cell
+                start[cell] += 1
     end = 0
     for cell in range(used + 1):
         end += start[cell]
         start[cell] = end
     for member in range(len(members) - 1, -1, -1):
-        i, cell = members[member], cell_of[member]
+        cell = cell_of[member]
         slot = start[cell] - 1
         start[cell] = slot
-        slots[slot, 0], slots[slot, 1] = cell, i
+        slots[slot, 0], slots[slot, 1] = cell, members[member]
         for axis in range(3):
-            spheres[slot, axis] = positions[i, axis]
-        spheres[slot, 3] = radii[i]
+            columns[axis, slot] = places[member, axis]
+        for number in range(4):
+            spheres[slot, number] = places[member, number]
+    for slot in range(len(members)):
+        members[slot] = slots[slot, 1]
+
+
+@kernel
+def gather(positions: Floats, cells: Cells, begin: int, end: int) -> None:
+    """Write the places of some members, whose radii stand where they were sorted last."""
+    members, places, spheres = cells.members, cells.places, cells.spheres
+    for member in range(begin, end):
+        i = members[member]
+        for axis in range(3):
+            places[member, axis] = positions[i, axis]
+        places[member, 3] = spheres[member, 3]
 
 
 @kernel
 def pairs_within(level: Level, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
     """Each body with those after it in its own cell, and with the later half of the neighbouring cells.
 
+    The first bodies of all runs are compared before any pair is noted, as whether one is near cannot be foreseen, and a
+    branch for each run would be mispredicted.
+
     Parameters and answer: `close` pairs and `tests` so far, and with those of this level.
     """
-    start, slots, spheres = cells.start, cells.slots, cells.spheres
+    start, slots, spheres, columns = cells.start, cells.slots, cells.spheres, cells.columns
     row, plane = level.row, level.plane
+    begins, ends = np.empty(RUNS, np.int64), np.empty(RUNS, np.int64)
     for slot in range(level.begin, level.end):
         cell = slots[slot, 0]
-        end = start[cell + 2]
-        close = compare(slot, slot + 1, end, slots, spheres, keys, close)
-        tests += max(0, end - slot - 1)
-        for neighbour in range(4):
-            middle = cell + row if neighbour == 0 else cell + plane + (neighbour - 2) * row
+        x, y, z = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2]
+        square = NEARLY * (spheres[slot, 3] + level.reach) ** 2
+        near, longest = 0, 0
+        for run in range(RUNS):
+            middle = cell + (row if run == 1 else plane + (run - 3) * row)
             begin, end = start[middle - 1], start[middle + 2]
-            close = compare(slot, begin, end, slots, spheres, keys, close)
-            tests += end - begin
+            if run == 0:
+                begin = slot + 1
+                end = max(begin, start[cell + 2])
+            begins[run], ends[run] = begin, end
+            bodies = end - begin
+            within = lanes_within(columns, begin, x, y, z, square) & ((1 << min(bodies, LANES)) - 1)
+            near |= within << (run * LANES)
+            longest = max(longest, bodies)
+            tests += bodies
+        while near != 0:
+            bit = lowest_bit(near)
+            near &= near - 1
+            other = begins[bit // LANES] + bit % LANES
+            close = compare(slot, other, other + 1, slots, spheres, keys, close)
+        if longest > LANES:
+            for run in range(RUNS):
+                close = compare(slot, begins[run] + LANES, ends[run], slots, spheres, keys, close)
     return Found(close, tests)
 
 
