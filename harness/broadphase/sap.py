@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
-from harness.broadphase.cells import span
+from harness.broadphase.levels import span
 from harness.broadphase.pairs import (
     NEARLY,
     SMALLEST,

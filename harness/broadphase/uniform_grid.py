@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from harness.arrays import Floats, Pairs
 from harness.broadphase import cells
 from harness.broadphase.lanes import LANES
+from harness.broadphase.levels import LEVEL, Levels
 from harness.broadphase.pairs import checked_positions, checked_radii, unpack
 from harness.scene.box import Box
 
@@ -80,7 +81,7 @@ class UniformGrid:
         return overlapped.most, overlapped.total / max(1, len(self.radii))
 
 
-def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
+def plan_levels(radii: Floats, level: NDArray[np.int64]) -> Levels:
     """(levels,) of LEVEL from the bodies in the order of their level: how large, whose slots, how many cells.
 
     Half of the cells are shared out by population. The other half equally, or the lattice of a few large bodies among
@@ -89,7 +90,7 @@ def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
     count = len(level)
     _, begin = np.unique(level, return_index=True)
     begin = begin if count else np.zeros(1, np.int64)
-    levels = np.zeros(len(begin), cells.LEVEL)
+    levels = np.zeros(len(begin), LEVEL)
     levels["begin"] = begin
     levels["end"] = np.append(begin[1:], count)
     levels["reach"] = np.maximum.reduceat(radii, begin) if count else 1.0
