@@ -53,7 +53,7 @@ class AlgorithmWord:
     stepped: bool = True
     own: bool = True
     kernels: bool = False
-    queries: tuple[Query, ...] = ("collision",)
+    queries: tuple[Query, ...] = tuple(QUERIES)
 
 
 ALGORITHMS: dict[str, AlgorithmWord] = {
@@ -68,6 +68,7 @@ ALGORITHMS: dict[str, AlgorithmWord] = {
         "from event to event: the next collision of every body is computed, not stepped to",
         stepped=False,
         kernels=True,
+        queries=("collision",),
     ),
 }
 

@@ -119,6 +119,19 @@ def queries(backend: Backend) -> tuple[Query, ...]:
     return said
 
 
+def near(backend: Distances, positions: Floats, quaternions: Floats, within: float) -> Pairs:
+    """The pairs whose gap is at most `within`, m: what "tolerance" is answered by.
+
+    A library that decides this for less than it measures the gap has a method of this name and these arguments; else
+    the pairs are those of `distances`.
+    """
+    cheaper = getattr(backend, "near", None)
+    pairs: Pairs = (
+        cheaper(positions, quaternions, within) if cheaper else backend.distances(positions, quaternions, within).pairs
+    )
+    return pairs
+
+
 def set_accuracy(backend: Backend, accuracy: float) -> bool:
     """Hand a backend that is not loaded yet the accuracy that is wanted; False if its library has no such knob.
 

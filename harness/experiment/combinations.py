@@ -19,13 +19,9 @@ Values = Mapping[str, Any]
 SHAPES = {"trimesh": ("hull", "mesh")}
 
 # What a backend's own pipeline can be asked; what one from elsewhere can is known when it is asked.
-NATIVE_QUERIES: dict[str, tuple[Query, ...]] = {
-    "coal": ("collision",),
-    "fcl": ("collision",),
-    "mujoco": ("collision",),
-    "pybullet": ("collision",),
-    "trimesh": ("collision",),
-}
+NATIVE_QUERIES: dict[str, tuple[Query, ...]] = dict.fromkeys(
+    ("coal", "mujoco", "pybullet", "trimesh"), ("collision", "tolerance", "distance")
+)
 
 
 @dataclass(frozen=True)

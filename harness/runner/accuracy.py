@@ -24,6 +24,7 @@ from harness.runner.reference_cache import kept
 from harness.runner.scene_of_point import build_scene
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.vocabulary import NEAR_QUERIES
 
 Fly = Callable[[Point, Scene], Trace]
 
@@ -42,8 +43,11 @@ def errors(point: Point, mesh: Mesh | None, trace: Trace, fly: Fly) -> dict[str,
     if motion.response != "none":
         bodies, exact = build_scene(point, mesh).bodies, _reference_events(reference, mesh, fly)
         return position_errors(bodies, trace, exact, motion.duration, motion.response, motion.restitution)
+    if point.engine.query in NEAR_QUERIES:
+        return {}
     contacts, error = _reference_contacts(reference, mesh)
-    return hit_errors(contacts, error, trace, motion.dt if is_stepped(point) else None)
+    between_frames = is_stepped(point) and point.engine.query == "collision"
+    return hit_errors(contacts, error, trace, motion.dt if between_frames else None)
 
 
 def reference_point(point: Point) -> Point:
