@@ -37,7 +37,8 @@ def late_hits(
     contacts : of the reference
     reported : what the run reported
     tolerance : the length, of the mean size of a pair
-    reference_tolerance : of the mean size, the gap at which the reference takes bodies for touching, and so may be early
+    reference_tolerance : of the mean size, the gap at which the reference takes bodies for touching, so that it may be
+        early
 
     Returns
     -------
