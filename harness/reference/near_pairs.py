@@ -68,8 +68,8 @@ def near_reference(scene: Scene, law: MotionLaw, within: float) -> NearReference
                 rows.append((frame, i, j, bounds.lower, bounds.upper))
     rows.sort()
     at, pairs = np.array([row[0] for row in rows], np.int64), np.array([row[1:3] for row in rows], np.int64)
-    bounds = np.array([row[3:] for row in rows]).reshape(-1, 2)
-    return NearReference(np.array(sorted(frames), np.int64), at, pairs.reshape(-1, 2), bounds[:, 0], bounds[:, 1])
+    lower, upper = np.array([row[3] for row in rows], np.float64), np.array([row[4] for row in rows], np.float64)
+    return NearReference(np.array(sorted(frames), np.int64), at, pairs.reshape(-1, 2), lower, upper)
 
 
 def pair_bounds(scene: Scene, trajectory: Trajectory, i: int, j: int) -> GapBounds:
