@@ -53,9 +53,10 @@ def near_reference(scene: Scene, law: MotionLaw, within: float) -> NearReference
     within : m
     """
     trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=True)
-    order = _spread(law.frames)
-    frames, rows, count = [], [], 0
-    for frame in order:
+    frames: list[int] = []
+    rows: list[tuple[int, int, int, float, float]] = []
+    count = 0
+    for frame in _spread(law.frames):
         trajectory.move_to(frame * law.dt)
         close = _close(scene, trajectory.positions, within)
         if frames and count + len(close) > MOST_PAIRS:
