@@ -7,11 +7,9 @@ import math
 from harness.report.drawing import palette
 from harness.vocabulary import ALGORITHMS, MethodName
 
-# Methods of this program in the order in which they came to be, then backends' own; six colours and eight markers.
-_PLACES = {name: place for place, name in enumerate(("brute-force", "grid", "predictive", "tree", "sap"))}
+# The first places are for algorithms of this program, in the order of the vocabulary; then come backends' own.
 _BACKENDS = {name: place for place, name in enumerate(("fcl", "pybullet", "coal", "mujoco", "trimesh"), start=5)}
 _LATER = 10
-_LETTERS = {"brute-force": "B", "grid": "G", "predictive": "P", "tree": "T", "sap": "S"}
 
 
 def style_of(method: MethodName) -> int:
@@ -20,12 +18,11 @@ def style_of(method: MethodName) -> int:
     >>> style_of(MethodName.read("fcl/grid", "hull")), style_of(MethodName.read("pybullet", "hull"))
     (1, 6)
     """
-    if method.algorithm in _PLACES:
-        return _PLACES[method.algorithm]
-    if method.algorithm == "native":
+    own = _own()
+    if method.algorithm not in own:
         return _BACKENDS.get(method.backend, _LATER)
-    later = [name for name in ALGORITHMS if name not in _PLACES]
-    return _LATER + (later.index(method.algorithm) if method.algorithm in later else len(later))
+    place = own.index(method.algorithm)
+    return place if place < min(_BACKENDS.values()) else place + len(_BACKENDS)
 
 
 def same_colour(style: int) -> list[int]:
@@ -44,6 +41,11 @@ def letter(method: MethodName) -> str:
     >>> letter(MethodName.read("fcl/grid", "hull")), letter(MethodName.read("pybullet", "hull"))
     ('G', 'Py')
     """
-    if method.algorithm == "native":
-        return method.backend[:2].capitalize()
-    return _LETTERS.get(method.algorithm, method.algorithm[:2].capitalize())
+    taken: dict[str, str] = {}
+    for name in _own():
+        taken[name] = next((mark for mark in name.upper() if mark.isalpha() and mark not in taken.values()), name)
+    return taken.get(method.algorithm, method.backend[:2].capitalize())
+
+
+def _own() -> list[str]:
+    return [name for name, word in ALGORITHMS.items() if word.own]
