@@ -1,7 +1,9 @@
 """Points arranged into series."""
 
 from harness.report.arrange import arrange
+from harness.report.styles import style_of
 from harness.store.tables import experiments, runs
+from harness.vocabulary import MethodName
 
 
 def arranged(database, name):
