@@ -18,7 +18,7 @@ from harness.cli.overrides import add_override_argument, overrides_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from harness.compare.document import Reduced
+    from harness.compare.document import Known, Reduced
     from harness.compare.outcome import Case, Comparison, Failure
     from harness.scene.mesh import Mesh
 
@@ -69,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     whole = Comparison()
     rows: list[tuple[Reduced, bool]] = []
     keep = []
+    known: Known = {}
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
         budget.left_out.append(f"of the poses of each scene one in {budget.every} was asked about")
@@ -77,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
         whole.unsupported += lacking
         progress(f"{experiment.name}: {', '.join(names)}")
         for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget):
-            small = reductions(found, meshes, SAVED if arguments.save else SHOWN)
+            small = reductions(found, meshes, SAVED if arguments.save else SHOWN, known)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
             keep.append(
                 (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE, budget), kept(experiment, found, small))

@@ -18,7 +18,7 @@ from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.compare.budget import Budget
 from harness.compare.comparison import compare_all
-from harness.compare.document import Reduced, document, reduced, shown_case
+from harness.compare.document import Known, Reduced, document, reduced, shown_case
 from harness.compare.free_running import run_both
 from harness.compare.hard_poses import hard_poses
 from harness.compare.outcome import Comparison
@@ -119,10 +119,10 @@ def cross_check(
         yield pair, found
 
 
-def reductions(found: Comparison, meshes: Meshes, most: int) -> list[Reduced]:
-    """The cases of a comparison, the first `most` of every backend made smaller."""
+def reductions(found: Comparison, meshes: Meshes, most: int, known: Known | None = None) -> list[Reduced]:
+    """The cases of a comparison, the first `most` of every backend made smaller, if that is not `known` already."""
     names = {id(mesh): path.name for path, mesh in meshes.items()}
-    return reduced(found, names, most)
+    return reduced(found, names, most, known)
 
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:

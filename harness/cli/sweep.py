@@ -157,6 +157,7 @@ def _compare(
         return []
     from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, kept, key_of, reductions
     from harness.compare.budget import Budget
+    from harness.compare.document import Known
 
     done = set() if arguments.fresh else database.history.compared()
     lines = []
@@ -171,11 +172,12 @@ def _compare(
         if not arguments.quiet:
             print(f"{experiment.name}: comparing {', '.join(asked)}", file=sys.stderr)
         budget = Budget(_COMPARING)
+        known: Known = {}
         for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget):
             if pair not in wanted:
                 continue
             found.left_out += [line for line in budget.left_out if line not in found.left_out]
-            rows = reductions(found, meshes, SHOWN)
+            rows = reductions(found, meshes, SHOWN, known)
             database.add_comparison(command, experiment.name, pair, keys[pair], kept(experiment, found, rows))
             real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
             lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")

@@ -37,7 +37,7 @@ class Points(Sequence[Point]):
     """
 
     def __init__(self, exact: Callable[[int], Point], rough: Floats) -> None:
-        self.rough = rough
+        self.rough = np.ascontiguousarray(rough)
         self._exact = exact
         self._known: dict[int, Point] = {}
         self._slack = 2 * _ROUGH * float(np.abs(rough).max(initial=0.0))
