@@ -15,7 +15,7 @@ from harness.arrays import Floats
 from harness.compare.placing import (
     FEATURES,
     at_contact,
-    contact_of,
+    face_normal,
     product_of,
     random_direction,
     random_turn,
@@ -25,7 +25,7 @@ from harness.compare.placing import (
     two_bodies,
 )
 from harness.compare.poses import Pose, PoseSet
-from harness.scene.mesh import Mesh
+from harness.scene.mesh import Mesh, Surface
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 
@@ -81,11 +81,10 @@ def _aligned(scene: Scene, away: float, rng: np.random.Generator) -> Pose:
     """The second body lies along a direction of the first, turned as it is or with the same feature against it."""
     sizes = scene.bodies.sizes.tolist()
     feature = str(rng.choice(FEATURES))
-    contact = contact_of(solid_of(scene, sizes[0]), sizes[0], feature, rng)
-    other = contact_of(solid_of(scene, sizes[1]), sizes[1], feature, rng)
+    first, second = (_direction_of(solid_of(scene, size), feature, rng) for size in sizes)
     turned = _UPRIGHT if rng.random() < 0.5 else random_turn(rng)
-    along = rotated(turned, contact.outward)
-    against = turned if rng.random() < 0.5 else turn_onto(other.outward, -along, 0.0)
+    along = rotated(turned, first)
+    against = turned if rng.random() < 0.5 else turn_onto(second, -along, 0.0)
     tilt = 0.0 if rng.random() < 0.4 else 10.0 ** rng.integers(-9, -2)
     about = random_direction(rng)
     against = product_of([np.cos(tilt / 2), *(np.sin(tilt / 2) * about)], against)
@@ -93,6 +92,18 @@ def _aligned(scene: Scene, away: float, rng: np.random.Generator) -> Pose:
     share = rng.uniform(0.0, 1.05)
     name = f"along a {feature} direction, {tilt:g} rad off, {share:.3g} of the width apart"
     return Pose(name, np.array([np.zeros(3), share * width * along]), np.array([turned, against]))
+
+
+def _direction_of(solid: Surface | None, feature: str, rng: np.random.Generator) -> Floats:
+    """From the centre to a vertex, along an edge, or across a face."""
+    if solid is None:
+        return random_direction(rng)
+    face = int(rng.integers(len(solid.faces)))
+    start, end, _ = solid.vertices[solid.faces[face]]
+    if feature == "face":
+        return face_normal(solid, face)
+    way = start if feature == "vertex" else end - start
+    return np.asarray(way / np.linalg.norm(way), np.float64)
 
 
 def _shared(scene: Scene, away: float, rng: np.random.Generator) -> Pose:

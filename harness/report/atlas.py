@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from harness.report.backends.comparisons import Comparisons
+from harness.report.backends.proof import sentences_of
 from harness.store.records import ComparisonRecord
 
 
@@ -53,7 +54,7 @@ class AtlasResults:
         for record in self.records:
             for cell in record.document["atlas"]:
                 place = (record.experiment, cell["shape"], cell["mesh"])
-                found.setdefault(place, {})[cell["engine"], cell["family"]] = cell | {"file": _file(record, cell)}
+                found.setdefault(place, {})[cell["engine"], cell["family"]] = cell | _shown(record, cell)
         return [
             AtlasPart(
                 experiment,
@@ -84,11 +85,11 @@ def case_stem(record: ComparisonRecord, place: int) -> str:
     return f"cases/{record.experiment}-{record.backends[0]}-{place}".replace("/", "-").replace("cases-", "cases/", 1)
 
 
-def _file(record: ComparisonRecord, cell: Mapping[str, Any]) -> str:
-    """Of the smallest case of a cell: the Python file, or else the experiment; empty without a case."""
+def _shown(record: ComparisonRecord, cell: Mapping[str, Any]) -> dict[str, Any]:
+    """The smallest case of a cell in sentences, and its file: of Python, or else the experiment; empty without any."""
     place = cell["case"]
     if place is None or place >= len(record.document["shown"]):
-        return ""
+        return {"file": "", "sentences": []}
     row = record.document["shown"][place]
     suffix = ".py" if row.get("script") else ".yaml" if row["text"] else ""
-    return f"{case_stem(record, place)}{suffix}" if suffix else ""
+    return {"file": f"{case_stem(record, place)}{suffix}" if suffix else "", "sentences": sentences_of(row)}

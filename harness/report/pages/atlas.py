@@ -95,11 +95,10 @@ def _bad(count: int) -> Entry:
     return Entry("", flag=number(count), sort=plain(count)) if count else Entry("0", sort=0.0)
 
 
-def _cases(part: AtlasPart) -> list[tuple[str, str]]:
-    """(what it shows, file) of the smallest cases."""
-    return [
-        (f"{engine}, {family}", cell["file"]) for (engine, family), cell in sorted(part.cells.items()) if cell["file"]
-    ]
+def _cases(part: AtlasPart) -> list[tuple[str, str, list[str]]]:
+    """(engine and family, file or "", sentences) of the smallest cases."""
+    found = sorted((place, cell["file"], cell["sentences"]) for place, cell in part.cells.items())
+    return [(f"{engine}, {family}", file, sentences) for (engine, family), file, sentences in found if sentences]
 
 
 PAGE = Page("atlas.html", "Atlas", 25, _content)

@@ -30,8 +30,8 @@ def _figure(part: AtlasPart) -> Figure:
         name,
         f"Wrong verdicts, {part.title}",
         f"{len(part.engines)} engines on {len(part.families)} families of poses. {told}",
-        "Each mark is an engine on a family of poses, with its wrong verdicts in a million beside it; the larger the "
-        "mark, the more. A line stands for none among those asked.",
+        "Each mark is an engine on a family of poses: the larger, the more wrong verdicts in a million, of which the "
+        "table has the intervals. A line stands for none among those asked.",
         lambda form, drawn: draw_rates(
             part.engines,
             part.families,
