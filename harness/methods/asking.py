@@ -130,11 +130,12 @@ class NearAsking(Asking):
     ----------
     scene, plan : as for `Asking`
     finder : loaded with the scene; None where the plan leaves pairs out
+    gaps : whether it is asked how far apart they are; else what a finder may say of it has no meaning
     """
 
-    def __init__(self, scene: Scene, plan: Plan, finder: NearFinder | None) -> None:
+    def __init__(self, scene: Scene, plan: Plan, finder: NearFinder | None, *, gaps: bool) -> None:
         super().__init__(scene, plan)
-        self._finder = finder
+        self._finder, self._gaps = finder, gaps
 
     @property
     def counters(self) -> Mapping[str, float]:
@@ -156,7 +157,7 @@ class NearAsking(Asking):
         pairs, gaps, points = finder.checked(found)
         flight.near += len(pairs)
         if flight.log is not None:
-            flight.log.add(number, pairs, gaps, points)
+            flight.log.add(number, pairs, *((gaps, points) if self._gaps else (None, None)))
         flight.observer.frame(time, pairs, flight.onsets.of(pairs), flight.folds.by(time))
 
     def found(self, flight: _Flight, times: float) -> dict[str, float]:

@@ -97,7 +97,7 @@ def _ask_nobody(name: MethodName) -> None:
     scene, law, method = two_bodies(name.shape), MotionLaw(0.6, 0.3, "none"), Native(name)
     plan, nobody = method.plan(scene, law), cast(Any, _Nobody())
     near, impacts = NativeNearPairs(nobody, 2, 1.0), NativeImpacts(nobody, scene)
-    for asking in (NearAsking(scene, plan, near), ImpactAsking(scene, plan, impacts)):
+    for asking in (NearAsking(scene, plan, near, gaps=True), ImpactAsking(scene, plan, impacts)):
         asking.fly(law, traced=True)
 
 

@@ -113,7 +113,8 @@ class SteppedMethod(Method):
     def load(self, scene: Scene, plan: Plan) -> Pipeline:
         pairs = plan.keeps("pairs")
         if self.name.query in NEAR_QUERIES:
-            return NearAsking(scene, plan, self.near_finder(scene, plan) if pairs else None)
+            finder = self.near_finder(scene, plan) if pairs else None
+            return NearAsking(scene, plan, finder, gaps=self.name.query == "distance")
         if self.name.query == "impact":
             return ImpactAsking(scene, plan, self.impact_finder(scene, plan) if pairs else None)
         return Stepping(scene, plan, self.detector(scene, plan) if pairs else None)

@@ -63,14 +63,6 @@ class Trace:
     counters : of the run
     near : whether a pair's event is that it came near, which is not asked whether they touch
     states : of the bodies of every hit, where they were asked for
-
-    Examples
-    --------
-    >>> import harness
-    >>> trace = harness.trace(harness.load("experiments/quickstart.yaml", count=20, duration=2))
-    >>> before, after = trace.states.velocities_before[0], trace.states.velocities_after[0]
-    >>> (before != after).any()
-    True
     """
 
     times: Floats
