@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from harness.arrays import Flags, Floats, Pairs
+from harness.arrays import Floats, Ints, Pairs
 from harness.backends.protocol import ImpactTimes, NearPairs
 
 # Relative: by how much more than a gap or a way spheres are grown, so that rounding loses no pair.
@@ -59,6 +60,11 @@ def rotations(quaternions: Floats) -> Rotation:
     return Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
 
 
+def rotations_at(motion: Motion, bodies: Ints, times: Floats) -> Rotation:
+    """Of bodies (k,), each at a time (k,) s after the start."""
+    return Rotation.from_rotvec(motion.spins[bodies] * times[:, None]) * rotations(motion.quaternions[bodies])
+
+
 def require_finite(*poses: Floats) -> None:
     """Raises ValueError for a pose that is not finite, which libraries answer with a crash or a false hit."""
     if not all(np.isfinite(part).all() for part in poses):
@@ -94,7 +100,16 @@ def impact_times(found: Sequence[tuple[int, int, float]], duration: float) -> Im
     return ImpactTimes(pairs, np.array([min(max(time, 0.0), duration) for *_, time in ordered], np.float64))
 
 
-def sphere_pairs(pairs: Pairs, centres: Floats, radii: Floats) -> Flags:
-    """(k,) bool: which pairs of spheres touch, centres (n, 3) m and radii (n,) m."""
-    i, j = pairs.T
-    return np.asarray(np.linalg.norm(centres[i] - centres[j], axis=1) <= radii[i] + radii[j], np.bool_)
+def close_pairs(centres: Floats, radii: Floats) -> Pairs:
+    """Pairs of spheres that touch, by scipy's tree, for libraries that cannot be asked for them.
+
+    Parameters
+    ----------
+    centres : (n, 3) float array, m
+    radii : (n,) float array, m
+    """
+    pairs = cKDTree(centres).query_pairs(2.0 * radii.max(initial=0.0), output_type="ndarray").astype(np.int64)
+    between = np.linalg.norm(centres[pairs[:, 0]] - centres[pairs[:, 1]], axis=1)
+    pairs = np.sort(pairs[between <= radii[pairs].sum(axis=1)], axis=1)
+    ordered: Pairs = pairs[np.lexsort(pairs.T[::-1])]
+    return ordered

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 import trimesh
-from scipy.spatial import cKDTree
 from trimesh.collision import CollisionManager
 
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, fcl_unit, size_ratio
-from harness.backends.poses import near_pairs, near_radii, require_finite, rotations, sphere_pairs
+from harness.backends.poses import close_pairs, near_pairs, near_radii, require_finite, rotations
 from harness.backends.protocol import NearPairs
 from harness.errors import InputError
 from harness.scene.mesh import has_area
@@ -73,7 +72,7 @@ class Trimesh:
                 self._single[body].add_object(body, solid)
         for body, pose in enumerate(self._poses(positions, quaternions)):
             self._single[body].set_transform(body, pose)
-        pairs = _close_pairs(positions, near_radii(self._radii, within))
+        pairs = close_pairs(positions, near_radii(self._radii, within))
         gaps, points = np.empty(len(pairs)), np.empty((len(pairs), 2, 3))
         for k, (i, j) in enumerate(pairs.tolist()):
             gaps[k], found = self._single[i].min_distance_other(self._single[j], return_data=True)
@@ -87,14 +86,6 @@ class Trimesh:
         poses[:, :3, :3] = rotations(quaternions).as_matrix()
         poses[:, :3, 3] = positions / self._unit
         return poses
-
-
-def _close_pairs(centres: Floats, radii: Floats) -> Pairs:
-    """Pairs of spheres that touch, sorted."""
-    pairs = cKDTree(centres).query_pairs(2.0 * radii.max(initial=0.0), output_type="ndarray").astype(np.int64)
-    pairs = np.sort(pairs[sphere_pairs(pairs, centres, radii)], axis=1)
-    ordered: Pairs = pairs[np.lexsort(pairs.T[::-1])]
-    return ordered
 
 
 BACKEND = Trimesh

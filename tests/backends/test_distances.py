@@ -17,7 +17,9 @@ from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
 
 # Of a size: by how much gaps of hulls and meshes may be off; those of pybullet and mujoco against their own hulls.
-ERRORS = {"fcl": 1e-14, "trimesh": 1e-14, "coal": 1e-12, "mujoco": 1e-6, "pybullet": 3e-4}
+ERRORS = {"fcl": 1e-14, "trimesh": 1e-14, "coal": 1e-12, "mujoco": 1e-6, "pybullet": 3e-4, "rapier3d": 2e-3}
+SINGLE = {"rapier3d"}
+GAPLESS = {("rapier3d", "mesh")}
 WITHIN = 0.4
 
 
@@ -79,11 +81,11 @@ def truth_of(shape, size):
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 @pytest.mark.parametrize("size", [1e-3, 1.0])
 def test_gaps_are_those_of_exact_arithmetic(backend, shape, size):
-    if shape not in backend.shapes:
-        pytest.skip("it has no such shape")
+    if shape not in backend.shapes or (backend.name, shape) in GAPLESS:
+        pytest.skip("it has no gaps of such a shape")
     scene = some_scene(shape, size)
     found = near_pairs(backend, scene, WITHIN * size)
-    error = 1e-15 if shape == "sphere" else ERRORS[backend.name]
+    error = ERRORS[backend.name] if shape != "sphere" else 1e-6 if backend.name in SINGLE else 1e-15
     real = asked_about(backend, scene)
     truth = truth_of(shape, size) if real is scene else true_gaps(real)
     gaps = dict(zip(map(tuple, found.pairs.tolist()), found.gaps, strict=True))
@@ -103,8 +105,8 @@ def test_gaps_are_those_of_exact_arithmetic(backend, shape, size):
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 def test_first_contact_and_the_distance_asked_for_decide(backend, shape):
-    if shape not in backend.shapes:
-        pytest.skip("it has no such shape")
+    if shape not in backend.shapes or (backend.name, shape) in GAPLESS:
+        pytest.skip("it has no gaps of such a shape")
     width = 1.0 if shape == "sphere" else 1 / np.sqrt(3)
     band = max(4e-15, 2 * backend.tolerance(shape))
     expected = {
@@ -121,6 +123,8 @@ def test_first_contact_and_the_distance_asked_for_decide(backend, shape):
 def test_a_body_inside_another_is_at_no_gap_as_a_solid_and_at_that_of_the_surfaces_as_a_mesh(backend):
     bodies = make_bodies([[0, 0, 0], [0.01, 0, 0]], sizes=[1.0, 0.2])
     for shape in ("hull", "mesh"):
+        if (backend.name, shape) in GAPLESS:
+            continue
         found = near_pairs(backend, Scene(shape, cube_mesh(), bodies, Box(np.full(3, 5.0))), 1.0)
         solid = shape == "hull" or "mesh" in getattr(backend, "solid", ()) or own_hulls(backend)
         gap = 0.0 if solid else (1.0 - 0.2) / np.sqrt(12) - 0.01

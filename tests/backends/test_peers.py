@@ -18,7 +18,7 @@ from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
 
 EXAMPLE = Path(__file__).parent / "example_backend"
-CLASSES = {"coal": "Coal", "mujoco": "MuJoCo", "trimesh": "Trimesh"}
+CLASSES = {"coal": "Coal", "ipctk": "Ipctk", "mujoco": "MuJoCo", "rapier3d": "Rapier3d", "trimesh": "Trimesh"}
 
 
 @pytest.fixture(params=CLASSES)
@@ -57,7 +57,7 @@ def test_a_peer_keeps_to_the_band_it_states(peer, shape, size):
 def test_a_peer_says_what_it_is(peer):
     assert units(peer())
     assert precision(peer())
-    scene, backend = random_scene("hull", 2, 5.0), peer()
+    scene, backend = random_scene(peer.shapes[-1], 2, 5.0), peer()
     backend.load(scene)
     with pytest.raises(ValueError, match="not finite"):
         backend.pairs(np.full((2, 3), np.nan), scene.bodies.quaternions)
