@@ -18,6 +18,7 @@ from harness.cli.overrides import add_override_argument, overrides_of
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from harness.compare.atlas import Cell
     from harness.compare.document import Known, Reduced
     from harness.compare.outcome import Case, Comparison, Failure
     from harness.scene.mesh import Mesh
@@ -54,6 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     import sys
 
     from harness.cli.crosscheck import SAVED, SHOWN, WHOLE, backends_of, cross_check, kept, key_of, reductions
+    from harness.cli.surveying import cell_row, cell_text, engines, survey_key, surveyed
     from harness.compare.budget import Budget
     from harness.compare.document import document
     from harness.compare.outcome import Comparison
@@ -73,7 +75,18 @@ def run(arguments: argparse.Namespace) -> int:
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
         budget.left_out.append(f"of the poses of each scene one in {budget.every} was asked about")
+    cells: list[Cell] = []
     for experiment in experiments:
+        if experiment.measure.families:
+            found_of = surveyed(experiment, meshes, engines(chosen), budget, progress)
+            whole.add(found_of.found)
+            rows += [(row, True) for row in found_of.rows]
+            cells += found_of.atlas.cells
+            keep += [
+                (experiment.name, pair, survey_key(experiment, meshes, pair[0]), document_of)
+                for pair, document_of in found_of.documents()
+            ]
+            continue
         names, lacking = backends_of(experiment, chosen)
         whole.unsupported += lacking
         progress(f"{experiment.name}: {', '.join(names)}")
@@ -84,16 +97,19 @@ def run(arguments: argparse.Namespace) -> int:
                 (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE, budget), kept(experiment, found, small))
             )
             whole.add(found)
-    whole.left_out += budget.left_out
+    whole.left_out += [line for line in budget.left_out if line not in whole.left_out]
     # as `document` has them: what one backend loses first, then what both share
     ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
     files = _saved(ordered, meshes, arguments.save) if arguments.save else {}
     if arguments.json:
-        json.dump(document(whole, ordered, files), sys.stdout, allow_nan=False)
+        atlas = {"atlas": [cell_row(cell) for cell in cells]} if cells else {}
+        json.dump(document(whole, ordered, files) | atlas, sys.stdout, allow_nan=False)
         print()
         for line in whole.unsupported + whole.left_out:
             progress(line)
     else:
+        for cell in cells:
+            print(cell_text(cell))
         _print(whole)
     for row in ordered:
         if row.tried and row.small is None:
@@ -155,12 +171,14 @@ def _saved(rows: list[Reduced], meshes: dict[Path, Mesh], folder: str) -> dict[i
     from pathlib import Path
 
     from harness.compare.reproduction import save
+    from harness.compare.script import script_of
 
     files: dict[int, str] = {}
     for place, row in enumerate(rows):
         if row.small is not None:
             mesh = next((path for path, opened in meshes.items() if opened is row.case.scene.mesh), None)
-            files[place] = str(save(row.small, Path(folder), f"{row.name}-{place}", mesh))
+            path = save(row.small, Path(folder), f"{row.name}-{place}", mesh, script_of(row.small))
+            files[place] = str(path)
     return files
 
 

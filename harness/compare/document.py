@@ -100,6 +100,7 @@ def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
     return {
         "backends": list(case.backends),
         "wrong": case.wrong,
+        "shape": case.scene.shape,
         "bodies": list(case.bodies),
         "gap": case.judgement.gap,
         "certificate": case.judgement.certificate | where,
@@ -133,7 +134,6 @@ def shown_case(row: Reduced) -> dict[str, Any]:
         "certificate": best.judgement.certificate | {"touching": best.judgement.touching},
     }  # fmt: skip
     return case_row(row, None) | {
-        "shape": best.scene.shape,
         "sizes": [float(sizes[i]), float(sizes[j])],
         "section": cross_section(best),
         "minimised": small,

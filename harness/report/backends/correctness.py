@@ -38,7 +38,11 @@ class Correctness:
 
 
 def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
-    """What comparisons have found, method by method. A wrong verdict counts for every shape of its comparison."""
+    """What comparisons have found, method by method.
+
+    A wrong verdict counts for its shape; a failure, and a verdict of a database that knows no shape of it, for every
+    shape of its comparison.
+    """
     verdicts: Counter[MethodName] = Counter()
     wrong: Counter[MethodName] = Counter()
     for record in records:
@@ -47,7 +51,8 @@ def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
             for name in tally["backends"]:
                 verdicts[MethodName.read(name, tally["shape"])] += tally["verdicts"]
         for case in record.document["cases"] + record.document["shared"] + record.document.get("findings", []):
-            for shape in sorted({tally["shape"] for tally in tallies}):
+            shapes = {case["shape"]} if case.get("shape") else {tally["shape"] for tally in tallies}
+            for shape in sorted(shapes):
                 for name in case["wrong"].split(" and "):
                     wrong[MethodName.read(name, shape)] += 1
     return Correctness(verdicts, wrong)
