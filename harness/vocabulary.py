@@ -201,7 +201,7 @@ class MethodName(NamedTuple):
     @property
     def knob(self) -> str:
         """The leaf that trades accuracy for time: "dt", "tolerance", or "" of a method that is exact."""
-        if self.stepped:
+        if self.stepped and self.query == "collision":
             return "dt"
         return "" if self.shape == "sphere" else "tolerance"
 

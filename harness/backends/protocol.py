@@ -4,8 +4,8 @@ A file of this folder adds one by a class of this form and a line `BACKEND = Cla
 in the group `harness.backends`. It is then named by `engine.backend`, with its own pipeline as the algorithm. What the
 functions below ask for, a backend may have beside that.
 
-One that says `queries` answers more than whether bodies touch: with "tolerance" and "distance" it has the method of
-`Distances`, with "impact" that of `Impacts`.
+One that says `queries` answers more than whether bodies touch: with "distance" it has the method of `Distances`, with
+"tolerance" that or the one of `Near`, with "impact" that of `Impacts`.
 """
 
 from __future__ import annotations
@@ -93,6 +93,14 @@ class Distances(Backend, Protocol):
         """
 
 
+@runtime_checkable
+class Near(Backend, Protocol):
+    """A backend whose `queries` have "tolerance", and whose library decides it for less than it measures a gap."""
+
+    def near(self, positions: Floats, quaternions: Floats, within: float) -> Pairs:
+        """The pairs whose gap is at most `within`, m, sorted; parameters as for `Distances.distances`."""
+
+
 class Impacts(Backend, Protocol):
     """A backend whose `queries` have "impact"."""
 
@@ -117,19 +125,6 @@ def queries(backend: Backend) -> tuple[Query, ...]:
     """What the backend can be asked; one that does not say answers whether bodies touch."""
     said: tuple[Query, ...] = getattr(backend, "queries", ("collision",))
     return said
-
-
-def near(backend: Distances, positions: Floats, quaternions: Floats, within: float) -> Pairs:
-    """The pairs whose gap is at most `within`, m: what "tolerance" is answered by.
-
-    A library that decides this for less than it measures the gap has a method of this name and these arguments; else
-    the pairs are those of `distances`.
-    """
-    cheaper = getattr(backend, "near", None)
-    pairs: Pairs = (
-        cheaper(positions, quaternions, within) if cheaper else backend.distances(positions, quaternions, within).pairs
-    )
-    return pairs
 
 
 def set_accuracy(backend: Backend, accuracy: float) -> bool:

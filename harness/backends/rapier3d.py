@@ -37,8 +37,8 @@ class Rapier3d:
     precision = "single"
 
     def tolerance(self, shape: Shape) -> float:
-        """Of poses and shapes in 24 bits, a few sizes from the origin."""
-        return 1e-6 if shape == "sphere" else 1e-5
+        """Of poses and shapes in 24 bits, tens of sizes from the middle of the scene."""
+        return 1e-5
 
     def load(self, scene: Scene) -> None:
         self._scene, self._unit = scene, unit_of(scene.bodies.sizes)
@@ -52,7 +52,7 @@ class Rapier3d:
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         require_finite(positions, quaternions)
-        return self._sensors.overlapping(positions / self._unit, quaternions)
+        return self._sensors.overlapping((positions - _middle(positions)) / self._unit, quaternions)
 
     def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
         """Raises InputError for meshes."""
@@ -61,8 +61,10 @@ class Rapier3d:
             raise InputError("it has no gaps of meshes")
         if self._solids is None:
             self._solids = _World(self._shapes, sensor=False)
-        pairs, gaps, points = self._solids.contacts(positions / self._unit, quaternions, within / self._unit)
-        return near_pairs(pairs, gaps * self._unit, points * self._unit, within)
+        middle = _middle(positions)
+        places = (positions - middle) / self._unit
+        pairs, gaps, points = self._solids.contacts(places, quaternions, within / self._unit)
+        return near_pairs(pairs, gaps * self._unit, points * self._unit + middle, within)
 
     def impacts(
         self, positions: Floats, quaternions: Floats, velocities: Floats, spins: Floats, duration: float
@@ -83,7 +85,8 @@ class Rapier3d:
         if not np.array_equal(radii, self._radii):
             self._radii = radii
             self._spheres = _World([rapier3d.SharedShape.ball(radius) for radius in radii.tolist()], sensor=True)
-        return self._spheres.overlapping(motion.middle() / self._unit, motion.quaternions)
+        centres = motion.middle()
+        return self._spheres.overlapping((centres - _middle(centres)) / self._unit, motion.quaternions)
 
 
 class _World:
@@ -135,6 +138,14 @@ class _World:
         for handle, place, quaternion in zip(self._handles, places.tolist(), quaternions.tolist(), strict=True):
             colliders[handle].position = rapier3d.Isometry3(vector(*place), turn(*quaternion))
         self._pipeline.step(within, self._islands, self._broad_phase, self._narrow_phase, self._bodies, self._colliders)
+
+
+def _middle(places: Floats) -> Floats:
+    """(3,) between the outermost of some places, from which they are told: single precision has few digits to lose."""
+    if len(places) == 0:
+        return np.zeros(3)
+    middle: Floats = 0.5 * (places.min(axis=0) + places.max(axis=0))
+    return middle
 
 
 def _sorted(pairs: list[tuple[int, int]]) -> Pairs:

@@ -45,7 +45,9 @@ class Native(SteppedMethod):
         return self._loaded(scene)
 
     def near_finder(self, scene: Scene, plan: Plan) -> NearFinder:
-        return NativeNearPairs(cast(Distances, self._loaded(scene)), len(scene.bodies), self.within or 0.0)
+        return NativeNearPairs(
+            cast(Distances, self._loaded(scene)), len(scene.bodies), self.within or 0.0, self.name.query
+        )
 
     def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:
         return NativeImpacts(cast(Impacts, self._loaded(scene)), scene)

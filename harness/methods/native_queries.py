@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import cast
 
 import numpy as np
 
 from harness.arrays import Flags, Floats
-from harness.backends.contract import read_only, require_gaps, require_impacts
-from harness.backends.protocol import Distances, Impacts, ImpactTimes, NearPairs
+from harness.backends.contract import read_only, require_gaps, require_impacts, require_pairs
+from harness.backends.protocol import Distances, Impacts, ImpactTimes, Near, NearPairs
 from harness.methods.impact_times import FrameMotion
 from harness.motion.kinematics import turn
 from harness.scene.scene import Scene
+from harness.vocabulary import Query
 
 
 class NativeNearPairs:
@@ -22,19 +24,27 @@ class NativeNearPairs:
     backend : loaded
     count : of bodies
     within : m
+    query : "distance"; or "tolerance", for which a backend that can is asked for pairs without their gaps
     """
 
-    def __init__(self, backend: Distances, count: int, within: float) -> None:
+    def __init__(self, backend: Distances | Near, count: int, within: float, query: Query = "distance") -> None:
         self._backend, self._count, self._within = backend, count, within
+        self._gapless = query == "tolerance" and isinstance(backend, Near)
 
     @property
     def counters(self) -> Mapping[str, float]:
         return dict(getattr(self._backend, "counters", {}))
 
     def near(self, positions: Floats, quaternions: Floats) -> NearPairs:
-        return self._backend.distances(read_only(positions), read_only(quaternions), self._within)
+        poses = read_only(positions), read_only(quaternions)
+        if not self._gapless:
+            return cast(Distances, self._backend).distances(*poses, self._within)
+        pairs = cast(Near, self._backend).near(*poses, self._within)
+        return NearPairs(pairs, np.full(len(pairs), np.nan), None)
 
     def checked(self, found: NearPairs) -> NearPairs:
+        if self._gapless:
+            return found._replace(pairs=require_pairs(self._backend.name, found.pairs, self._count))
         return require_gaps(self._backend.name, found, self._count, self._within)
 
 
