@@ -12,7 +12,7 @@ from harness.vocabulary import MethodName
 from harness.whole_file import write_whole
 
 
-def save(case: Case, folder: Path, name: str, meshes: Sequence[Path]) -> Path:
+def save(case: Case, folder: Path, name: str, meshes: Sequence[Path], script: str | None = None) -> Path:
     """Write a case whose bodies are at rest at their poses.
 
     Parameters
@@ -21,6 +21,7 @@ def save(case: Case, folder: Path, name: str, meshes: Sequence[Path]) -> Path:
     folder : made if it is not there
     name : of the file, without suffix
     meshes : the files of its meshes, those that its bodies have of which are copied beside the experiment
+    script : a Python file that shows the same without this program, written beside it
 
     Returns
     -------
@@ -32,6 +33,8 @@ def save(case: Case, folder: Path, name: str, meshes: Sequence[Path]) -> Path:
         if not (folder / meshes[number].name).exists():
             shutil.copyfile(meshes[number], folder / meshes[number].name)
     path = folder / f"{name}.yaml"
+    if script is not None:
+        write_whole(path.with_suffix(".py"), script)
     write_whole(path, text_of(case, [mesh.name for mesh in meshes]))
     return path
 

@@ -18,6 +18,7 @@ from harness.broadphase.ignored import WithoutIgnored
 from harness.broadphase.pairs import BroadPhase
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
+from harness.methods.query_stages import decide_exact_stages
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
@@ -64,6 +65,16 @@ class Culled(SteppedMethod):
             self.decide_spheres(decisions)
         else:
             self._decide_solids(scene, decisions)
+
+    def decide_cull(self, scene: Scene, near: str, decisions: Decisions) -> None:
+        alone = f"without its cull, {self.name.algorithm} would be brute-force; choose that"
+        why = f"only pairs whose bounding spheres {near} go on, found by {self.found_by}"
+        decisions.take("sphere_cull", True, why, fixed=alone)
+        self.decide_size_classes(scene, decisions)
+        decide_exact_stages(self.name.query, scene, decisions)
+
+    def close_pairs_of(self, scene: Scene, plan: Plan, radii: Floats) -> BroadPhase:
+        return self.scheme.make(radii, scene.box, plan.keeps("size_classes"))
 
     @property
     def found_by(self) -> str:
@@ -125,6 +136,8 @@ class Culled(SteppedMethod):
 
     def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         yield from super().warm_ups(meshes)
+        if self.name.query != "collision":
+            return
         algorithm = self.name.algorithm
         yield f"close pairs of {algorithm}", partial(_find_close_pairs, self)
         if self.name.shape != "sphere":

@@ -75,7 +75,7 @@ class HullNarrowPhase:
     def __init__(self, scene: Scene) -> None:
         self._fcl = FclPairTest(scene)
         self._places = Places(scene.bodies.sizes)
-        self._hulls = HullPairs(_hulls_of_size_1(scene), scene.mesh_of, MARGIN)
+        self._hulls = HullPairs(hulls_of_size_1(scene), scene.mesh_of, MARGIN)
         self._tests = 0
 
     @property
@@ -163,7 +163,7 @@ class MeshNarrowPhase:
         return touching
 
 
-def _hulls_of_size_1(scene: Scene) -> list[Hull]:
+def hulls_of_size_1(scene: Scene) -> list[Hull]:
     """The hulls that the bodies have in their sizes, a mesh each.
 
     Raises
@@ -177,6 +177,19 @@ def _hulls_of_size_1(scene: Scene) -> list[Hull]:
     for (mesh, size), hull in scene.hulls.items():
         hulls[mesh] = hull_of(hull.vertices / size, hull.faces)
     return hulls
+
+
+def hull_of_size_1(scene: Scene) -> Hull:
+    """The one hull that the bodies have in their sizes.
+
+    Raises
+    ------
+    InputError
+        If there is more than one mesh, or each size is given a hull of its own.
+    """
+    if len(scene.meshes) > 1:
+        raise InputError("it can be asked this query of bodies of one mesh only")
+    return hulls_of_size_1(scene)[0]
 
 
 def _all_open(pairs: Pairs, placement: Placement) -> PairVerdicts:

@@ -49,7 +49,8 @@ class Scene:
         for mesh in self.meshes if self.shape == "hull" else ():
             if mesh.flat:
                 raise InputError(f"{mesh.name}: {NO_HULL}")
-        numbers = np.array(self.mesh_of, np.int64) if len(self.mesh_of) else np.zeros(len(self.bodies), np.int64)
+        shared = len(self.meshes) < 2 or not len(self.mesh_of)
+        numbers = np.zeros(len(self.bodies), np.int64) if shared else np.array(self.mesh_of, np.int64)
         if len(numbers) != len(self.bodies) or (numbers >= max(1, len(self.meshes))).any():
             raise ValueError("each body has a mesh, one of those that there are")
         object.__setattr__(self, "mesh_of", numbers)
@@ -72,19 +73,24 @@ class Scene:
         """What each body shares with others that have the same solid, in the order of the bodies."""
         return list(zip(self.mesh_of.tolist(), self.bodies.sizes.tolist(), strict=True))
 
-    def solid_of(self, size: float, mesh: int = 0) -> Surface:
+    def solid_of(self, size: float, mesh: int | None = None) -> Surface:
         """What stands for a body of this size (m) in the narrow phase, in m, in its own frame: its hull or its mesh.
 
         Parameters
         ----------
         size : m
-        mesh : its number
+        mesh : its number; it may be left out where all bodies share one
 
         Raises
         ------
         ValueError
             For spheres, which have neither vertices nor faces.
+        InputError
+            If there are several meshes, and none is named.
         """
+        if mesh is None:
+            _ = self.mesh  # refuses several
+            mesh = 0
         if not self.meshes or self.shape == "sphere":
             raise ValueError("a sphere has no vertices")
         if self.shape == "hull" and (mesh, size) in self.hulls:
