@@ -122,7 +122,7 @@ def test_the_tolerance_of_fcl_depends_on_how_unlike_the_hulls_are():
 @pytest.mark.slow
 def test_hulls_with_tiny_edges_are_judged_to_the_declared_tolerance():
     mesh = mesh_named("package:pybullet_data/lego/lego_vhacd.obj")
-    (pose_set,) = list(hard_poses("hull", mesh))[:1]
+    (pose_set,) = list(hard_poses("hull", (mesh,)))[:1]
     backend = load("fcl", pose_set.scene)
     wrong = []
     for pose in pose_set.poses(pose_set.scene):

@@ -81,7 +81,7 @@ def test_convex_surfaces_cross_where_their_hulls_touch():
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 def test_the_short_verdict_is_that_of_the_judge(shape):
-    for pose_set in list(hard_poses(shape, cube_mesh(), 31))[::3]:
+    for pose_set in list(hard_poses(shape, (cube_mesh(),), 31))[::3]:
         for pose in pose_set.poses(pose_set.scene):
             truth = judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions)
             assert touches(pose_set.scene, 0, 1, pose.positions, pose.quaternions) == truth.touching
