@@ -54,7 +54,17 @@ def run(arguments: argparse.Namespace) -> int:
     import json
     import sys
 
-    from harness.cli.crosscheck import SAVED, SHOWN, WHOLE, backends_of, cross_check, kept, key_of, reductions
+    from harness.cli.crosscheck import (
+        SAVED,
+        SHOWN,
+        WHOLE,
+        backends_of,
+        cross_check,
+        event_methods,
+        kept,
+        key_of,
+        reductions,
+    )
     from harness.cli.surveying import cell_row, cell_text, engines, survey_key, surveyed
     from harness.compare.budget import Budget
     from harness.compare.document import document
@@ -88,9 +98,10 @@ def run(arguments: argparse.Namespace) -> int:
             ]
             continue
         names, lacking = backends_of(experiment, chosen)
+        events = event_methods(experiment, chosen)
         whole.unsupported += lacking
-        progress(f"{experiment.name}: {', '.join(names)}")
-        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget):
+        progress(f"{experiment.name}: {', '.join((*names, *events))}")
+        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget, events):
             small = reductions(found, meshes, SAVED if arguments.save else SHOWN, known)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
             keep.append(
@@ -134,7 +145,7 @@ def _chosen(text: str | None) -> tuple[str, ...]:
         if backend not in names():
             hint = near(backend, names()) or f"; there are {listed(names())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
-        possible = [word for word in algorithms_of(backend) if ALGORITHMS[word].stepped and ALGORITHMS[word].own]
+        possible = [word for word in algorithms_of(backend) if ALGORITHMS[word].own]
         if stroke and algorithm not in possible:
             hint = near(algorithm, possible) or (f"; there are {listed(possible)}" if possible else "")
             raise InputError(f"--backends: {backend} cannot be asked at poses with algorithm {shown(algorithm)}{hint}")
@@ -183,9 +194,18 @@ def _saved(rows: list[Reduced], meshes: dict[Path, Mesh], folder: str) -> dict[i
 
 
 def _print(found: Comparison) -> None:
+    from harness.vocabulary import MethodName
+
     kinds = ("agree", "undecided", "containment", "approximation", "real")
     for tally in found.tallies:
         counts = ", ".join(f"{kind} {getattr(tally, kind)}" for kind in kinds)
+        if not MethodName.read(tally.backends[1], tally.shape).stepped:
+            print(
+                f"{tally.backends[1]}, {tally.shape}: {tally.verdicts} contacts that begin within {tally.poses} frames "
+                f"while bodies approach, without response, each held against exact arithmetic: agree {tally.agree}, "
+                f"undecided {tally.undecided}, real {tally.real}"
+            )
+            continue
         print(
             f"{' and '.join(tally.backends)}, {tally.shape}: {tally.verdicts} verdicts at {tally.poses} poses: {counts}"
         )

@@ -159,24 +159,28 @@ def _compare(
     lines = _survey(surveys, meshes, database, command, arguments) if surveys else []
     if not crosschecked:
         return lines
-    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, kept, key_of, reductions
+    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, event_methods, kept, key_of, reductions
     from harness.compare.budget import Budget
     from harness.compare.document import Known
+    from harness.compare.event_audit import FRAMES
 
     done = set() if arguments.fresh else database.history.compared()
     for experiment in crosschecked:
         names, _ = backends_of(experiment)
+        events = event_methods(experiment)
         pairs = [(a, b) for place, a in enumerate(names) for b in names[place + 1 :]]
+        pairs += [(FRAMES, name) for name in events]
         keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs}
         wanted = {pair for pair, key in keys.items() if key not in done}
         if not wanted:
             continue
         asked = tuple(name for name in names if any(name in pair for pair in wanted))
+        left = tuple(name for name in events if (FRAMES, name) in wanted)
         if not arguments.quiet:
-            print(f"{experiment.name}: comparing {', '.join(asked)}", file=sys.stderr)
+            print(f"{experiment.name}: comparing {', '.join((*asked, *left))}", file=sys.stderr)
         budget = Budget(_COMPARING)
         known: Known = {}
-        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget):
+        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=left):
             if pair not in wanted:
                 continue
             found.left_out += [line for line in budget.left_out if line not in found.left_out]

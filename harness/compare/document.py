@@ -10,6 +10,7 @@ from harness.compare.minimise import minimise
 from harness.compare.outcome import Case, Comparison, Failure
 from harness.compare.reproduction import text_of
 from harness.compare.tally import Approximation, Counts, GapHistogram
+from harness.vocabulary import MethodName
 
 Known: TypeAlias = dict[tuple[str, str, tuple[int, int], bytes], Case]
 """The smaller cases, by who is wrong about which bodies at which pose."""
@@ -57,7 +58,8 @@ def reduced(found: Comparison, mesh_name: dict[int, str], most: int, known: Know
     rows = []
     for case in found.cases + found.shared:
         tried[case.wrong] = tried.get(case.wrong, 0) + 1
-        now = tried[case.wrong] <= most
+        # what computes events has no verdict on bodies at rest, so that nothing smaller would show it
+        now = tried[case.wrong] <= most and MethodName.read(case.wrong, case.scene.shape).stepped
         small = None
         if now:
             place = (case.wrong, case.scene.shape, case.bodies, case.pose.positions.tobytes())

@@ -17,7 +17,10 @@ from harness.report.missing import is_judged
 from harness.report.quantity import plural
 from harness.report.results import Results
 from harness.report.stability.case import is_case
+from harness.report.weight import weight
 from harness.store.records import VerdictRow
+
+_MOST_FINDINGS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +92,18 @@ class Overview:
     def map_figure(self) -> Figure | None:
         """All of them in a figure, which can be had as a file."""
         return replace(map_figure(self.maps), file="map.svg") if self.maps else None
+
+    @cached_property
+    def weightiest(self) -> list[Card]:
+        """The experiments whose findings weigh most, eight at most; those that are only maps are shown as maps."""
+        shown = {made.page.record.name for made in self.maps}
+        found = [card for card in self.cards if card.page.findings.sentences and card.page.record.name not in shown]
+        return sorted(found, key=lambda card: weight(card.page), reverse=True)[:_MOST_FINDINGS]
+
+    @property
+    def further(self) -> int:
+        """How many experiments have found something else."""
+        return sum(bool(card.page.findings.sentences) for card in self.cards) - len(self.weightiest)
 
     @property
     def groups(self) -> list[tuple[str, list[Card]]]:

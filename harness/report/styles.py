@@ -7,7 +7,9 @@ import math
 from harness.report.drawing import palette
 from harness.vocabulary import ALGORITHMS, MethodName
 
-# The first places are for algorithms of this program, in the order of the vocabulary; then come backends' own.
+# The first places are for algorithms of this program, in the order of the vocabulary; then come backends' own. Events
+# stand apart from all that steps, in a colour of their own.
+_EVENTS = 3
 _BACKENDS = {name: place for place, name in enumerate(("fcl", "pybullet", "coal", "mujoco", "trimesh"), start=5)}
 _LATER = 10
 
@@ -21,7 +23,10 @@ def style_of(method: MethodName) -> int:
     own = _own()
     if method.algorithm not in own:
         return _BACKENDS.get(method.backend, _LATER)
+    if not method.stepped:
+        return _EVENTS
     place = own.index(method.algorithm)
+    place += place >= _EVENTS
     return place if place < min(_BACKENDS.values()) else place + len(_BACKENDS)
 
 
@@ -48,4 +53,7 @@ def letter(method: MethodName) -> str:
 
 
 def _own() -> list[str]:
-    return [name for name, word in ALGORITHMS.items() if word.own]
+    """Algorithms of this program, those that step first."""
+    return sorted(
+        (name for name, word in ALGORITHMS.items() if word.own), key=lambda name: not ALGORITHMS[name].stepped
+    )

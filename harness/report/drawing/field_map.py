@@ -10,7 +10,7 @@ from harness.report.drawing.axes import CHARACTER, FONT, Form, shorten
 from harness.report.drawing.canvas import Canvas
 
 _LEFT, _BOTTOM, _TOP = 76.0, 46.0, 28.0
-_ROW = 54.0  # px
+_ROW = 42.0  # px
 _HATCH = 9.0  # px from line to line
 _GAP = 1.5  # px of the page between fields
 
