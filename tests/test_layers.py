@@ -43,7 +43,7 @@ KNOWS = {
     "pair": {"experiment", "scene", "narrowphase"},
     "cli": FLIGHT | {"experiment", "reference", "store", "compare", "runner", "replay", "report"},
 }
-LIBRARIES = {"fcl", "pybullet", "coal", "igl", "ipctk", "mujoco", "py_parry3d", "rapier3d", "trimesh"}
+LIBRARIES = {"fcl", "pybullet", "coal", "igl", "ipctk", "mujoco", "py_parry3d", "pydrake", "rapier3d", "trimesh"}
 
 
 def rooms_imported(file: Path) -> set[str]:
