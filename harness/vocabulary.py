@@ -12,8 +12,19 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 Shape = Literal["sphere", "hull", "mesh"]
 """What the narrow phase sees of a body: its bounding sphere, its convex hull, or its surface of triangles."""
 
-Query = Literal["collision"]
-"""What is asked of a pair of bodies at a frame."""
+Query = Literal["collision", "tolerance", "distance", "impact"]
+"""What is asked of the pairs of bodies at a frame."""
+
+QUERIES: dict[Query, str] = {
+    "collision": "pairs that touch",
+    "tolerance": "pairs whose gap is at most `within`",
+    "distance": "pairs whose gap is at most `within`, each with its gap and its nearest points",
+    "impact": "pairs that begin to touch since the last frame, each with the time",
+}
+"""The queries, each with the answer of a frame."""
+
+NEAR_QUERIES: tuple[Query, ...] = ("tolerance", "distance")
+"""Those that are asked about pairs within a gap, `engine.within`."""
 
 Response = Literal["reflect", "elastic", "none"]
 """What a hit does: mirror each velocity along the line of centres, pass an impulse by mass, nothing."""
@@ -34,13 +45,15 @@ class AlgorithmWord:
     meaning : which questions it asks, and when
     stepped : whether it steps from frame to frame, `dt` apart; else it computes events, as exactly as `tolerance` says
     own : whether the pairs are found by this program; else by the backend's own broad phase
-    kernels : whether kernels of this program decide on the pairs, and the backend only where these cannot
+    kernels : whether kernels of this program decide on the pairs that touch, and the backend only where these cannot
+    queries : what it can be asked
     """
 
     meaning: str
     stepped: bool = True
     own: bool = True
     kernels: bool = False
+    queries: tuple[Query, ...] = ("collision",)
 
 
 ALGORITHMS: dict[str, AlgorithmWord] = {
@@ -52,7 +65,9 @@ ALGORITHMS: dict[str, AlgorithmWord] = {
     "tree": AlgorithmWord("pairs from a dynamic tree of axis-aligned boxes"),
     "native": AlgorithmWord("the backend's own broad phase", own=False),
     "predictive": AlgorithmWord(
-        "from event to event: the next collision of every body is computed, not stepped to", stepped=False, kernels=True
+        "from event to event: the next collision of every body is computed, not stepped to",
+        stepped=False,
+        kernels=True,
     ),
 }
 
@@ -81,10 +96,11 @@ KNOBS = ("dt", "tolerance")
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
 
 
-def algorithms_of(backend: str) -> tuple[str, ...]:
+def algorithms_of(backend: str, query: Query = "collision") -> tuple[str, ...]:
     """The algorithms that a backend can be asked with, first the one that its name alone stands for.
 
-    One that is not of this program has its own detection only.
+    One that is not of this program has its own detection only. The one that answers single questions about pairs that
+    touch has its own way to gaps and to times, too.
 
     >>> algorithms_of("pybullet")
     ('native',)
@@ -92,7 +108,8 @@ def algorithms_of(backend: str) -> tuple[str, ...]:
     'brute-force'
     """
     own = backend == OWN_BACKEND
-    return tuple(name for name, word in ALGORITHMS.items() if word.own == own)
+    both = own and query != "collision"
+    return tuple(name for name, word in ALGORITHMS.items() if both or word.own == own)
 
 
 class MethodName(NamedTuple):
@@ -111,7 +128,8 @@ class MethodName(NamedTuple):
     @classmethod
     def of(cls, parameters: Mapping[str, Any]) -> MethodName:
         """The method of a run with these leaves; databases of before there were queries know collision alone."""
-        query: Query = parameters.get("query") or "collision"
+        given = parameters.get("query")
+        query: Query = given if given in QUERIES else "collision"
         return cls(str(parameters["backend"]), str(parameters["algorithm"]), parameters["shape"], query)
 
     @classmethod
@@ -131,7 +149,8 @@ class MethodName(NamedTuple):
     @property
     def pipeline(self) -> str:
         """Backend and algorithm as a command takes them: "fcl/grid", and the backend alone for its own pipeline."""
-        return f"{self.backend}/{self.algorithm}" if self._word.own else self.backend
+        alone = algorithms_of(self.backend)[0] == self.algorithm and not self._word.own
+        return self.backend if alone else f"{self.backend}/{self.algorithm}"
 
     @property
     def short(self) -> str:
@@ -152,8 +171,11 @@ class MethodName(NamedTuple):
 
     @property
     def kernels(self) -> bool:
-        """Whether kernels of this program decide on the pairs, and the backend only where these cannot."""
-        return self._word.kernels
+        """Whether kernels of this program decide on the pairs, and the backend only where these cannot.
+
+        No library is asked by how much pairs are apart, or when they touch, but for its own pipeline.
+        """
+        return self._word.kernels or (self._word.own and self.query != "collision")
 
     @property
     def stepped(self) -> bool:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from harness.arrays import Floats, Pairs
+from harness.backends.protocol import ImpactTimes, NearPairs
 
 
 class ContractError(ValueError):
-    """An answer is no list of pairs; the message names the backend."""
+    """An answer is not what was asked for; the message names the backend."""
 
 
 def require_pairs(name: str, answer: object, count: int) -> Pairs:
@@ -60,11 +61,98 @@ def require_pairs(name: str, answer: object, count: int) -> Pairs:
     return pairs
 
 
+def require_gaps(name: str, answer: object, count: int, within: float) -> NearPairs:
+    """The answer of a backend to how far apart bodies are, if it is one.
+
+    Parameters
+    ----------
+    name : of the backend
+    answer : what its `distances` returned
+    count : of bodies
+    within : m, what it was asked for
+
+    Raises
+    ------
+    ContractError
+
+    >>> require_gaps("mine", ([[0, 1]], [0.25], None), 3, 0.5)
+    NearPairs(pairs=array([[0, 1]]), gaps=array([0.25]), points=None)
+    >>> require_gaps("mine", ([[0, 1]], [0.75], None), 3, 0.5)
+    Traceback (most recent call last):
+    harness.backends.contract.ContractError: backend "mine": the gap of (0, 1) must be from 0 to 0.5 m, not 0.75
+    """
+    parts = _parts(name, answer, ("pairs", "gaps", "points"))
+    pairs = require_pairs(name, parts[0], count)
+    gaps = _numbers(name, "gap", parts[1], pairs, within, "m")
+    if parts[2] is None:
+        return NearPairs(pairs, gaps, None)
+    points = _floats(name, "nearest points", parts[2], (len(pairs), 2, 3))
+    if (wrong := (gaps > 0.0) & ~np.isfinite(points).all(axis=(1, 2))).any():
+        raise ContractError(f'backend "{name}": the nearest points of {_first(pairs, wrong)} are not finite')
+    return NearPairs(pairs, gaps, points)
+
+
+def require_impacts(name: str, answer: object, count: int, duration: float) -> ImpactTimes:
+    """The answer of a backend to when bodies touch, if it is one.
+
+    Parameters
+    ----------
+    name : of the backend
+    answer : what its `impacts` returned
+    count : of bodies
+    duration : s, of the frame
+
+    Raises
+    ------
+    ContractError
+
+    >>> require_impacts("mine", ([[0, 1]], [-1.0]), 3, 0.5)
+    Traceback (most recent call last):
+    harness.backends.contract.ContractError: backend "mine": the time of (0, 1) must be from 0 to 0.5 s, not -1
+    """
+    parts = _parts(name, answer, ("pairs", "times"))
+    pairs = require_pairs(name, parts[0], count)
+    return ImpactTimes(pairs, _numbers(name, "time", parts[1], pairs, duration, "s"))
+
+
 def read_only(poses: Floats) -> Floats:
     """The same numbers, which a backend cannot write to."""
     view: Floats = poses.view()
     view.flags.writeable = False
     return view
+
+
+def _parts(name: str, answer: object, parts: tuple[str, ...]) -> tuple[object, ...]:
+    if not isinstance(answer, tuple) or len(answer) != len(parts):
+        raise ContractError(f'backend "{name}": an answer must be a tuple of {", ".join(parts)}')
+    return answer
+
+
+def _numbers(name: str, what: str, answer: object, pairs: Pairs, most: float, unit: str) -> Floats:
+    """One number a pair, from 0 to the most."""
+    numbers = _floats(name, f"{what}s", answer, (len(pairs),))
+    if (wrong := ~((numbers >= 0.0) & (numbers <= most))).any():  # so that nan is wrong too
+        raise ContractError(
+            f'backend "{name}": the {what} of {_first(pairs, wrong)} must be from 0 to {most:g} {unit}, '
+            f"not {numbers[wrong][0]:.17g}"
+        )
+    return numbers
+
+
+def _floats(name: str, what: str, answer: object, shape: tuple[int, ...]) -> Floats:
+    try:
+        found = np.asarray(answer)
+    except ValueError as error:
+        raise ContractError(f'backend "{name}": its {what} are no array: {error}') from error
+    if found.size == 0 == np.prod(shape):
+        return np.empty(shape)
+    if found.shape != shape or not np.issubdtype(found.dtype, np.floating):
+        raise ContractError(
+            f'backend "{name}": its {what} must be a float array of shape {shape}, not {found.dtype} of shape '
+            f"{found.shape}"
+        )
+    floats: Floats = found.astype(np.float64, copy=False)
+    return floats
 
 
 def _first(pairs: Pairs, wrong: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> tuple[int, int]:

@@ -3,17 +3,49 @@
 A file of this folder adds one by a class of this form and a line `BACKEND = Class`; another package by an entry point
 in the group `harness.backends`. It is then named by `engine.backend`, with its own pipeline as the algorithm. What the
 functions below ask for, a backend may have beside that.
+
+One that says `queries` answers more than whether bodies touch: with "tolerance" and "distance" it has the method of
+`Distances`, with "impact" that of `Impacts`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from harness.arrays import Floats, Pairs
 from harness.scene.hull import Hull
 from harness.scene.scene import Scene
-from harness.vocabulary import Shape
+from harness.vocabulary import Query, Shape
+
+
+class NearPairs(NamedTuple):
+    """Which pairs are near, and how far apart.
+
+    Attributes
+    ----------
+    pairs : (k, 2) int array, i < j, sorted
+    gaps : (k,) float array, m, each at most the distance that was asked for; 0 where the two touch
+    points : (k, 2, 3) float array, m, in the world: the nearest point of i and that of j; those of touching pairs may
+        be nan. None from a library that has no points
+    """
+
+    pairs: Pairs
+    gaps: Floats
+    points: Floats | None
+
+
+class ImpactTimes(NamedTuple):
+    """Which pairs begin to touch, and when.
+
+    Attributes
+    ----------
+    pairs : (k, 2) int array, i < j, sorted
+    times : (k,) float array, s after the start of the frame
+    """
+
+    pairs: Pairs
+    times: Floats
 
 
 @runtime_checkable
@@ -45,6 +77,61 @@ class Backend(Protocol):
         positions : (n, 3) float array, m
         quaternions : (n, 4) float array, unit, w x y z
         """
+
+
+class Distances(Backend, Protocol):
+    """A backend whose `queries` have "distance", or "tolerance", which takes the pairs of the same answer."""
+
+    def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
+        """All pairs whose gap is at most a distance.
+
+        Parameters
+        ----------
+        positions : (n, 3) float array, m
+        quaternions : (n, 4) float array, unit, w x y z
+        within : m
+        """
+
+
+class Impacts(Backend, Protocol):
+    """A backend whose `queries` have "impact"."""
+
+    def impacts(
+        self, positions: Floats, quaternions: Floats, velocities: Floats, spins: Floats, duration: float
+    ) -> ImpactTimes:
+        """All pairs that begin to touch in a frame: those that are apart at its start and touch later, up to its end.
+
+        Every body moves at constant velocity and constant spin.
+
+        Parameters
+        ----------
+        positions : (n, 3) float array, m, at the start
+        quaternions : (n, 4) float array, unit, w x y z, at the start
+        velocities : (n, 3) float array, m/s
+        spins : (n, 3) float array, rad/s, in the world's axes
+        duration : s, of the frame
+        """
+
+
+def queries(backend: Backend) -> tuple[Query, ...]:
+    """What the backend can be asked; one that does not say answers whether bodies touch."""
+    said: tuple[Query, ...] = getattr(backend, "queries", ("collision",))
+    return said
+
+
+def set_accuracy(backend: Backend, accuracy: float) -> bool:
+    """Hand a backend that is not loaded yet the accuracy that is wanted; False if its library has no such knob.
+
+    A backend that has one says so by an attribute `accuracy`.
+
+    Parameters
+    ----------
+    accuracy : of gaps, or of the gap at a time of impact, as a fraction of the size of a body
+    """
+    if not hasattr(backend, "accuracy"):
+        return False
+    backend.accuracy = accuracy
+    return True
 
 
 def units(backend: Backend) -> str:

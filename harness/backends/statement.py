@@ -16,7 +16,7 @@ from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 
 from harness.backends import registry
-from harness.backends.protocol import approximations, precision, units
+from harness.backends.protocol import approximations, precision, queries, units
 from harness.child_process import Channel, Child
 from harness.process_limits import isolate
 from harness.vocabulary import Shape
@@ -36,6 +36,7 @@ class Statement:
     installed : False where it lacks what it imports
     tolerance : of size, by the shapes that it has
     approximations : by what it replaces a shape
+    queries : what it can be asked
     """
 
     missing: str | None
@@ -44,6 +45,7 @@ class Statement:
     approximations: Mapping[str, str] = field(default_factory=dict)
     units: str = ""
     precision: str = ""
+    queries: tuple[str, ...] = ()
 
 
 def statement(name: str, seconds: float = LISTED) -> Statement:
@@ -108,6 +110,7 @@ def _say(name: str) -> Statement:
                 approximations={str(shape): str(how) for shape, how in approximations(backend).items()},
                 units=units(backend),
                 precision=precision(backend),
+                queries=tuple(map(str, queries(backend))),
             )
     except registry.BackendError as error:
         return Statement(_one_line(error.why), installed=False)
@@ -123,8 +126,9 @@ def _say_elsewhere(name: str, seconds: float) -> Statement:
         if not isinstance(answer, bytes):
             return Statement(f"importing it ended its process with {child.end()}")
     try:
-        return Statement(**json.loads(answer))
-    except (ValueError, TypeError):
+        said = json.loads(answer)
+        return Statement(**said | {"queries": tuple(said["queries"])})
+    except (ValueError, TypeError, LookupError):
         return Statement("what it says of itself is garbage")
 
 

@@ -2,6 +2,10 @@
 
 Stepped runs report the hits that were answered, at the time of their frame; with `response: none`, the onset of each
 contact, at the first frame that sees it.
+
+With --json or --csv also the state of each body of a hit: its position (m), its velocity before and after (m/s), and
+the impulse that it received (kg m/s). With `response: none`, a wall turns the component along its normal, whatever
+other walls were met in that frame.
 """
 
 from __future__ import annotations
@@ -14,7 +18,9 @@ from harness.cli.overrides import add_override_argument, overrides_of
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("path", metavar="PATH", help="an experiment file")
     add_override_argument(parser)
-    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="one JSON document on standard output")
+    form.add_argument("--csv", action="store_true", help="a row a hit on standard output")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,6 +40,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         json.dump(traced.to_json(), sys.stdout, allow_nan=False)
         print()
+        return 0
+    if arguments.csv:
+        sys.stdout.write(traced.to_csv())
         return 0
     for time, (i, j), wall in zip(traced.times.tolist(), traced.bodies.tolist(), traced.walls.tolist(), strict=True):
         what = f"bodies {i} and {j}" if wall < 0 else f"body {i} and wall {WALLS[wall]}"

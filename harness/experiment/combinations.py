@@ -11,12 +11,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.experiment.messages import listed
-from harness.vocabulary import algorithms_of
+from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, QUERIES, Query, algorithms_of
 
 Values = Mapping[str, Any]
 
 # The shapes of a backend that lacks one; what a backend from elsewhere holds is known when it is asked.
 SHAPES = {"trimesh": ("hull", "mesh")}
+
+# What a backend's own pipeline can be asked; what one from elsewhere can is known when it is asked.
+NATIVE_QUERIES: dict[str, tuple[Query, ...]] = {
+    "coal": ("collision",),
+    "fcl": ("collision",),
+    "mujoco": ("collision",),
+    "pybullet": ("collision",),
+    "trimesh": ("collision",),
+}
 
 
 @dataclass(frozen=True)
@@ -93,7 +102,7 @@ def frames_can_be_counted(values: Values) -> Conflict | None:
 
 def backend_has_the_algorithm(values: Values) -> Conflict | None:
     """fcl answers single questions, so that any algorithm can ask them; other backends bring their own detection."""
-    backend, algorithms = values["backend"], algorithms_of(values["backend"])
+    backend, algorithms = values["backend"], algorithms_of(values["backend"], values["query"])
     if values["algorithm"] not in algorithms:
         message = f"backend {backend} has no algorithm {{}}, only {listed(algorithms)}"
         return Conflict(message, ("backend", "algorithm"), excludable=True)
@@ -109,7 +118,54 @@ def backend_has_the_shape(values: Values) -> Conflict | None:
     return None
 
 
+def within_is_asked_for(values: Values) -> Conflict | None:
+    """Only the queries about pairs that are near need to know how near."""
+    query, within = values["query"], values["within"]
+    if query in NEAR_QUERIES and within is None:
+        return Conflict(
+            f"query {query} needs within, the gap up to which pairs are asked about (m)", ("within", "query")
+        )
+    if query not in NEAR_QUERIES and within is not None:
+        message = f"within would have no effect with query {query}, only with {listed(NEAR_QUERIES, 'or')}"
+        return Conflict(f"{message}; it must be null, not {{}}", ("query", "within"), excludable=True)
+    return None
+
+
+def algorithm_answers_the_query(values: Values) -> Conflict | None:
+    """What is computed from event to event has no frames to ask about."""
+    query, algorithm = values["query"], values["algorithm"]
+    answered = ALGORITHMS[algorithm].queries
+    if query not in answered:
+        message = f"algorithm {algorithm} cannot be asked query {{}}, only {listed(answered)}"
+        return Conflict(message, ("algorithm", "query"), excludable=True)
+    return None
+
+
+def backend_answers_the_query(values: Values) -> Conflict | None:
+    """Methods of this program answer every query by kernels of their own; a library what it has been taught."""
+    backend, query = values["backend"], values["query"]
+    answered = NATIVE_QUERIES.get(backend, tuple(QUERIES))
+    if not ALGORITHMS[values["algorithm"]].own and query not in answered:
+        message = f"backend {backend} cannot be asked query {{}}, only {listed(answered)}"
+        return Conflict(message, ("backend", "query"), excludable=True)
+    return None
+
+
+def bodies_pass_through(values: Values) -> Conflict | None:
+    """A response answers pairs that touch; without one the motion is the same for every method and every query."""
+    query, response = values["query"], values["response"]
+    if query != "collision" and response != "none":
+        message = f"query {query} needs response none, for only pairs that touch can be answered; response is {{}}"
+        return Conflict(message, ("query", "response"), excludable=True)
+    return None
+
+
 SCENE: tuple[Rule, ...] = (has_count_or_bodies, has_one_box, has_a_mesh)
 MOTION: tuple[Rule, ...] = (restitution_has_an_effect, frames_can_be_counted)
-ENGINE: tuple[Rule, ...] = (backend_has_the_algorithm,)
-POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE, backend_has_the_shape)
+ENGINE: tuple[Rule, ...] = (
+    backend_has_the_algorithm,
+    within_is_asked_for,
+    algorithm_answers_the_query,
+    backend_answers_the_query,
+)
+POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE, backend_has_the_shape, bodies_pass_through)

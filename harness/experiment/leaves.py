@@ -31,6 +31,7 @@ NUMERIC = {
     "duration",
     "dt",
     "restitution",
+    "within",
     "tolerance",
     *DERIVED,
 }

@@ -13,6 +13,7 @@ from harness.vocabulary import (
     DEFAULT_ALGORITHM,
     REFERENCE_ALGORITHM,
     Algorithm,
+    Query,
     ReferenceAlgorithm,
     Response,
     Shape,
@@ -118,7 +119,13 @@ class EngineSpec(Declared):
     algorithm: Algorithm = Field(
         DEFAULT_ALGORITHM, description="which questions are asked, and when; see `harness list`"
     )
-    tolerance: Positive = Field(1e-6, description="of size; nearer surfaces touch (predictive hulls, meshes)")
+    query: Query = Field("collision", description="what is asked of the pairs of every frame; see `harness list`")
+    within: Positive | None = Field(
+        None, description="gap up to which pairs are asked about, m; for query tolerance or distance, which need it"
+    )
+    tolerance: Positive = Field(
+        1e-6, description="of size; nearer surfaces touch, and gaps are known to it (no effect on spheres)"
+    )
     stages: dict[str, Switch] = Field({}, description="stages forced on or off, for an ablation; see `harness plan`")
 
     @model_validator(mode="after")

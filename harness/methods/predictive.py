@@ -23,8 +23,9 @@ from harness.methods.penetration import Penetration
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import decide_penetration, decide_recording
 from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
-from harness.motion.course import CourseLog
+from harness.motion.course import Course, CourseLog
 from harness.motion.finite import require_finite_state
+from harness.motion.hit_states import states_of_events
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
@@ -157,19 +158,16 @@ class EventDriven:
         Outcome
             With the counters, the run's clock and the errors of a predictive run.
         """
-        scene, plan, bodies = self._scene, self._plan, self._scene.bodies
+        scene, plan = self._scene, self._plan
+        recorded = plan.keeps("recording")
         samples = _Samples(scene, plan, law)
-        course = CourseLog(bodies.positions, bodies.velocities) if plan.keeps("recording") else None
         clock = Clock("run_seconds")
-        simulation = self._start(law, record=traced or course is not None)
+        simulation = self._start(law, record=traced or recorded, states=recorded)
         clock.lap("run_seconds")
         for sample in range(1, SAMPLES + 1):
             clock.start()
             until = law.duration * sample / SAMPLES
-            if course is not None:
-                course.follow(simulation, until)
-            else:
-                simulation.advance(until)
+            simulation.advance(until)
             clock.lap("run_seconds")
             samples.take(simulation, until)
         counted = simulation.counters
@@ -180,15 +178,22 @@ class EventDriven:
         if counted["events"]:
             metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
             metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]
-        trace = _trace(scene, simulation, law.duration, counted) if traced else None
-        return Outcome(metrics, trace, course.course() if course is not None else None)
+        trace = _trace(scene, plan, simulation, law.duration, counted) if traced or recorded else None
+        return Outcome(metrics, trace if traced else None, None if trace is None else _course(scene, trace))
 
-    def _start(self, law: MotionLaw, *, record: bool) -> Simulation:
+    def _start(self, law: MotionLaw, *, record: bool, states: bool) -> Simulation:
         """The simulation at time 0; its clock runs already."""
         bodies, box = self._scene.bodies, self._scene.box
         if self._form is not None:
             return SolidSimulation(
-                bodies, box, self._form, law.response, law.restitution, record=record, tolerance=self._tolerance
+                bodies,
+                box,
+                self._form,
+                law.response,
+                law.restitution,
+                record=record,
+                states=states,
+                tolerance=self._tolerance,
             )
         return Simulation(
             bodies.positions,
@@ -199,6 +204,7 @@ class EventDriven:
             response=law.response,
             restitution=law.restitution,
             record=record,
+            states=states,
             search="lists" if self._plan.keeps("neighbour_lists") else "cells",
         )
 
@@ -257,20 +263,34 @@ class _Depth:
         self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))
 
 
-def _trace(scene: Scene, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:
+def _trace(scene: Scene, plan: Plan, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:
+    """All hits; where the plan keeps a recording, with the states of their bodies."""
+    masses = scene.bodies.masses
+    states: Any = simulation.take_states() if plan.keeps("recording") else None
     events: Any = simulation.take_events()
     pair = events["kind"] == PAIR_EVENT
+    bodies = np.column_stack([events["i"], np.where(pair, events["j"], -1)]).astype(np.int64)
     velocities = simulation.velocities
     return Trace(
         times=events["time"],
-        bodies=np.column_stack([events["i"], np.where(pair, events["j"], -1)]).astype(np.int64),
+        bodies=bodies,
         walls=np.where(pair, -1, events["wall"]).astype(np.int64),
         time=duration,
         positions=simulation.positions,
         velocities=velocities,
-        energy=energy(velocities, scene.bodies.masses),
+        energy=energy(velocities, masses),
         counters=counted,
+        states=None if states is None else states_of_events(states, bodies, masses),
     )
+
+
+def _course(scene: Scene, trace: Trace) -> Course | None:
+    """The course of every body, where the states of its hits were kept."""
+    if trace.states is None:
+        return None
+    log = CourseLog(scene.bodies.positions, scene.bodies.velocities)
+    log.add_hits(trace.times, trace.bodies, trace.states)
+    return log.course()
 
 
 def _fly_events(shape: Shape) -> None:

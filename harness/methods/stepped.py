@@ -158,8 +158,8 @@ def decide_penetration(scene: Scene, decisions: Decisions) -> None:
 def decide_recording(recorded: bool, decisions: Decisions) -> None:
     """Whether the course of every body is kept; for any method."""
     if recorded:
-        why = "a replay is made of this run: the course of every body is kept"
-        decisions.take("recording", True, why, fixed="the replay would be empty")
+        why = "a replay or a trace is made of this run: the course of every body is kept"
+        decisions.take("recording", True, why, fixed="nothing would be kept")
     else:
         decisions.take("recording", False, "nothing asks for recorded poses", fixed="there is nothing to record for")
 

@@ -21,6 +21,7 @@ from harness.methods.observer import Folds, Observer, Onsets
 from harness.methods.stages import Plan
 from harness.motion.course import CourseLog, folded_course
 from harness.motion.finite import require_finite_state
+from harness.motion.hit_states import HitStateLog, RecordedResponse
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
@@ -88,12 +89,10 @@ class Stepping:
         folded, recorded = law.response == "none", plan.keeps("recording")
         trajectory = Trajectory(scene.bodies, scene.box, folded=folded, turning=plan.keeps("orientations"))
         observer = Observer(scene, trajectory, penetration=plan.keeps("penetration"), traced=traced)
-        response = (
-            None if law.response == "none" else CollisionResponse(scene.bodies.masses, law.response, law.restitution)
-        )
+        response, states = _response(scene, trajectory, law, stateful=traced and recorded)
         course = CourseLog(trajectory.positions, trajectory.velocities) if recorded and response else None
         steps = _steps(scene, plan, trajectory, detector, response)
-        observe = _observation(observer, trajectory, response, course)
+        observe = _observation(observer, trajectory, response, course, states)
         clock = Clock(*PHASES)
 
         def fly(number: int) -> _Frame:
@@ -129,7 +128,7 @@ class Stepping:
             **_clock_metrics(clock, law.frames, end),
             **_errors(observer, response, plan),
         }
-        trace = _trace(scene, trajectory, observer, end, counted) if traced else None
+        trace = _trace(scene, trajectory, observer, states, end, counted) if traced else None
         if course is not None:
             return Outcome(metrics, trace, course.course())
         return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
@@ -138,6 +137,19 @@ class Stepping:
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 _NO_HITS: Flags = np.empty(0, np.bool_)
 _NO_WALLS: Flags = np.empty((0, 6), np.bool_)
+
+
+def _response(
+    scene: Scene, trajectory: Trajectory, law: MotionLaw, *, stateful: bool
+) -> tuple[CollisionResponse | None, HitStateLog | None]:
+    """What answers the contacts, if anything does, and the log of the states of its hits, if they are asked for."""
+    masses = scene.bodies.masses
+    if law.response == "none":
+        return None, HitStateLog(masses) if stateful else None
+    if not stateful:
+        return CollisionResponse(masses, law.response, law.restitution), None
+    response = RecordedResponse(masses, law.response, law.restitution, trajectory.positions)
+    return response, response.log
 
 
 def _steps(
@@ -196,7 +208,11 @@ def _steps(
 
 
 def _observation(
-    observer: Observer, trajectory: Trajectory, response: CollisionResponse | None, course: CourseLog | None
+    observer: Observer,
+    trajectory: Trajectory,
+    response: CollisionResponse | None,
+    course: CourseLog | None,
+    states: HitStateLog | None,
 ) -> Callable[[_Frame], None]:
     """What observes a frame after it, outside of all clocks."""
 
@@ -204,7 +220,10 @@ def _observation(
         observer.frame(frame.time, frame.pairs, frame.hits, frame.walls)
 
     def passing(frame: _Frame) -> None:
-        observer.frame(frame.time, frame.pairs, onsets.of(frame.pairs), folds.by(frame.time))
+        begun, walls = onsets.of(frame.pairs), folds.by(frame.time)
+        observer.frame(frame.time, frame.pairs, begun, walls)
+        if states is not None:
+            states.add_passing(frame.pairs[begun], walls, trajectory.positions, trajectory.velocities_at(frame.time))
 
     if response is not None:
         return answered if course is None else _recorded(answered, course, trajectory)
@@ -309,7 +328,12 @@ def _errors(observer: Observer, response: CollisionResponse | None, plan: Plan) 
 
 
 def _trace(
-    scene: Scene, trajectory: Trajectory, observer: Observer, end: float, counted: dict[str, float]
+    scene: Scene,
+    trajectory: Trajectory,
+    observer: Observer,
+    states: HitStateLog | None,
+    end: float,
+    counted: dict[str, float],
 ) -> Trace | None:
     if observer.log is None:
         return None
@@ -322,4 +346,5 @@ def _trace(
         velocities=velocities,
         energy=energy(velocities, scene.bodies.masses),
         counters=counted,
+        states=None if states is None else states.states(),
     )

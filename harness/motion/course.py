@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.arrays import Floats, Ints
-from harness.motion.predictive.simulation import Simulation
+from harness.arrays import Floats, Ints, Pairs
+from harness.motion.hit_states import HitStates
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 
@@ -68,14 +68,20 @@ class CourseLog:
         self._positions.append(positions.copy())
         self._speeds.append(velocities.copy())
 
-    def follow(self, simulation: Simulation, until: float) -> None:
-        """Fly a predictive simulation, which keeps its events, to `until` (s), a hit at a time."""
-        while not simulation.advance(until, max_events=1):
-            self.turn(simulation.time, simulation.positions, simulation.velocities)
-        velocities = simulation.velocities
-        if (velocities != self._velocities).any():  # the last hit, after which nothing was due before `until`
-            time = float(simulation.events["time"][-1])
-            self.turn(time, simulation.positions - velocities * (simulation.time - time), velocities)
+    def add_hits(self, times: Floats, bodies: Pairs, states: HitStates) -> None:
+        """Begin a leg for every body that one of these hits, in order, has turned.
+
+        Parameters
+        ----------
+        times : (k,) float array, s
+        bodies : (k, 2) int array; the second is -1 where a wall was hit
+        states : HitStates of them
+        """
+        turned = (bodies >= 0) & (states.velocities_after != states.velocities_before).any(axis=2)
+        self._times.append(np.repeat(times, 2).reshape(-1, 2)[turned])
+        self._bodies.append(bodies[turned])
+        self._positions.append(states.positions[turned])
+        self._speeds.append(states.velocities_after[turned])
 
     def course(self) -> Course:
         """The legs recorded; of several of a body that begin at the same time, the last."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isnan
 from typing import Any
 
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.motion.course import Course
+from harness.motion.hit_states import HitStates
 from harness.vocabulary import WALLS
 
 
@@ -56,6 +60,15 @@ class Trace:
     positions, velocities : (n, 3) float arrays at that time, m and m/s
     energy : J, translational, at that time
     counters : of the run
+    states : of the bodies of every hit, where they were asked for
+
+    Examples
+    --------
+    >>> import harness
+    >>> trace = harness.trace(harness.load("experiments/quickstart.yaml", count=20, duration=2))
+    >>> before, after = trace.states.velocities_before[0], trace.states.velocities_after[0]
+    >>> (before != after).any()
+    True
     """
 
     times: Floats
@@ -66,6 +79,7 @@ class Trace:
     velocities: Floats
     energy: float
     counters: Mapping[str, float]
+    states: HitStates | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The document that `harness trace --json` prints."""
@@ -75,6 +89,9 @@ class Trace:
                 events.append({"time": time, "kind": "pair", "bodies": [i, j]})
             else:
                 events.append({"time": time, "kind": "wall", "bodies": [i], "wall": WALLS[wall]})
+        if self.states is not None:
+            for event, states in zip(events, self.states.rows(), strict=True):
+                event |= {name: rows[: len(event["bodies"])] for name, rows in states.items()}
         final = {
             "time": self.time,
             "position": self.positions.tolist(),
@@ -82,6 +99,31 @@ class Trace:
             "energy": self.energy,
         }
         return {"events": events, "final": final, "counters": dict(self.counters)}
+
+    def to_csv(self) -> str:
+        """The table that `harness trace --csv` prints: a row a hit; what a wall does not have is empty."""
+        states = self.states
+        columns = [] if states is None else [(name, getattr(states, name)) for name in _STATE_COLUMNS.values()]
+        text = io.StringIO()
+        rows = csv.writer(text, lineterminator="\n")
+        named = [f"{whose}{name}_{axis}" for whose in ("", "other_") for name in _STATE_COLUMNS for axis in "xyz"]
+        rows.writerow(["time", "kind", "body", "other", "wall", *(named if columns else ())])
+        for k, (time, (i, j), wall) in enumerate(
+            zip(self.times.tolist(), self.bodies.tolist(), self.walls.tolist(), strict=True)
+        ):
+            met = ["pair", i, j, ""] if wall < 0 else ["wall", i, "", WALLS[wall]]
+            numbers = [number for body in (0, 1) for _, column in columns for number in column[k, body].tolist()]
+            rows.writerow([time, *met, *("" if isnan(number) else number for number in numbers)])
+        return text.getvalue()
+
+
+# Names of the columns of a table, and of the fields of `HitStates` that they show.
+_STATE_COLUMNS = {
+    "position": "positions",
+    "velocity_before": "velocities_before",
+    "velocity_after": "velocities_after",
+    "impulse": "impulses",
+}
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ def execute(
     point : Point
     mesh : the mesh its scene names
     memory : B that the scene may need
-    traced : keep every hit
+    traced : keep every hit, with the state of its bodies
     recorded : keep what a replay shows, and measure nothing else: the clocks of such a run see it
     on_demand : metrics to measure that are measured on demand alone
 
@@ -70,7 +70,7 @@ def execute(
     warm_up(point)
     clock = Clock("setup_seconds")
     scene, law, method = build_scene(point, mesh, memory), law_of(point), method_of_point(point)
-    plan = method.plan(scene, law, recorded=recorded)
+    plan = method.plan(scene, law, recorded=traced or recorded)
     pipeline = method.load(scene, plan)
     clock.lap("setup_seconds")
     if not (traced or recorded):

@@ -11,7 +11,7 @@ from harness.vocabulary import ALGORITHMS, MethodName
 
 def name_of(point: Point) -> MethodName:
     """The name of the method of a point."""
-    return MethodName(point.engine.backend, point.engine.algorithm, point.scene.shape)
+    return MethodName(point.engine.backend, point.engine.algorithm, point.scene.shape, point.engine.query)
 
 
 def method_of_point(point: Point) -> Method:

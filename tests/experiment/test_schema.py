@@ -43,6 +43,8 @@ def test_everything_but_title_bodies_box_and_mesh_has_the_default_of_the_contrac
         "restitution": 1.0,
         "backend": "fcl",
         "algorithm": "brute-force",
+        "query": "collision",
+        "within": None,
         "tolerance": 1e-6,
         "stages": {},
     }
@@ -259,3 +261,37 @@ def test_criteria_hold_leaf_values_as_results_do(read: Read) -> None:
     row = "{metric: a, where: {dt: 1/60, size: {choice: [1, 2]}, box: [1, 2, 3]}, equals: 0}"
     (criterion,) = read(f"{SPHERES}expect: [{row}]").expect
     assert criterion.where == {"dt": 1 / 60, "size": {"choice": [1.0, 2.0]}, "box": [1.0, 2.0, 3.0]}
+
+
+PASSING = SPHERES + "motion: {response: none}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (
+            PASSING + "engine: {query: tolerance}",
+            "exp.yaml:4:17: query tolerance needs within, the gap up to which pairs are asked about (m)",
+        ),
+        (
+            PASSING + "engine: {within: 0.1}",
+            "exp.yaml:4:18: within would have no effect with query collision, only with tolerance or distance",
+        ),
+        (
+            PASSING + "engine: {algorithm: predictive}\nsweep: {query: [collision, impact]}",
+            "exp.yaml:5:28: algorithm predictive cannot be asked query impact, only collision; leave it out with "
+            "`exclude: - {algorithm: predictive, query: impact}`",
+        ),
+        (
+            SPHERES + "engine: {query: impact}",
+            "exp.yaml:3:17: query impact needs response none, for only pairs that touch can be answered; response is "
+            "reflect",
+        ),
+        (
+            PASSING + "engine: {query: colision}",
+            "exp.yaml:4:17: query must be collision, tolerance, distance or impact",
+        ),
+    ],
+)
+def test_a_query_that_cannot_be_is_refused(text: str, problem: str, problems_in: ProblemsIn) -> None:
+    assert any(found.startswith(problem) for found in problems_in(text)), problems_in(text)

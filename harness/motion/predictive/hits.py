@@ -7,7 +7,7 @@ from harness.motion.predictive.burst import note_hit
 from harness.motion.predictive.clock import absolute, advance
 from harness.motion.predictive.codes import ResponseCode
 from harness.motion.predictive.response import answer_elastic, answer_reflect
-from harness.motion.predictive.state import PAIR_EVENT, WALL_EVENT, World
+from harness.motion.predictive.state import NOBODY, PAIR_EVENT, WALL_EVENT, World
 from harness.motion.predictive.sums import add
 from harness.narrowphase.spheres import approaches
 
@@ -37,6 +37,7 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     swap = schedule[p].label < schedule[k].label
     i = p if swap else k
     j = k if swap else p
+    note_before(world, i, j, now)
     if rules.response == ResponseCode.ELASTIC:
         restitution = rules.restitution
         if restitution < 1.0:
@@ -55,6 +56,7 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     note_hit(world, i, now, rules.burst_window)
     note_hit(world, j, now, rules.burst_window)
     counts.pair_hits += 1
+    note_after(world, i, j)
     record(world, now, PAIR_EVENT, schedule[i].label, schedule[j].label, -1)
     return True
 
@@ -82,6 +84,10 @@ def note_onset(world: World, k: int, p: int, now: float) -> None:
         last.i = i
         last.j = j
         world.totals.counts[0].pair_hits += 1
+        first = k if world.spheres.schedule[k].label == i else p
+        second = p if first == k else k
+        note_before(world, first, second, now)
+        note_after(world, first, second)
         record(world, now, PAIR_EVENT, i, j, -1)
 
 
@@ -110,12 +116,42 @@ def reflect_from_wall(world: World, k: int, face: int, now: float) -> None:
     motion, totals = world.spheres.motions[k], world.totals
     axis = face // 2
     impulse = 2.0 * world.spheres.schedule[k].mass * abs(motion.velocity[axis])
+    note_before(world, k, NOBODY, now)
     motion.velocity[axis] = -motion.velocity[axis]
+    note_after(world, k, NOBODY)
     add(totals.wall_impulses[face], impulse)
     add(totals.sums[0].wall_virial, impulse * motion.position[axis] * (1.0 if face % 2 == 1 else -1.0))
     note_hit(world, k, now, 0.0)
     totals.counts[0].box_hits += 1
     record(world, now, WALL_EVENT, world.spheres.schedule[k].label, -1, face)
+
+
+@step
+def note_before(world: World, i: int, j: int, now: float) -> None:
+    """Keep the states of spheres i and j, or of i alone, before the event that is recorded next, if they are kept."""
+    if world.states.size > 0:
+        state = world.states[world.totals.counts[0].recorded]
+        state.now = now
+        for place in range(2):
+            k = i if place == 0 else j
+            if k >= 0:
+                motion = world.spheres.motions[k]
+                state.time[place] = motion.time
+                for axis in range(3):
+                    state.position[place, axis] = motion.position[axis]
+                    state.before[place, axis] = motion.velocity[axis]
+
+
+@step
+def note_after(world: World, i: int, j: int) -> None:
+    """Keep their velocities after it."""
+    if world.states.size > 0:
+        state = world.states[world.totals.counts[0].recorded]
+        for place in range(2):
+            k = i if place == 0 else j
+            if k >= 0:
+                for axis in range(3):
+                    state.after[place, axis] = world.spheres.motions[k].velocity[axis]
 
 
 @step

@@ -14,6 +14,7 @@ from harness.motion.predictive.state import (
     CONTACT,
     COUNTS,
     EVENT,
+    EVENT_STATE,
     MOTION,
     NEIGHBOURS,
     NOBODY,
@@ -36,7 +37,7 @@ from harness.motion.predictive.state import (
 LOG_SIZE = 1 << 16
 
 
-def prepare(start: InitialState, rules: Rules, record: bool) -> World:
+def prepare(start: InitialState, rules: Rules, record: bool, states: bool) -> World:
     """A world at time zero: no sphere stands in a cell yet, and all events are unscheduled.
 
     Parameters
@@ -44,6 +45,7 @@ def prepare(start: InitialState, rules: Rules, record: bool) -> World:
     start : InitialState
     rules : Rules
     record : whether events are kept
+    states : whether the states of their spheres are kept with them
     """
     n = len(start)
     order = along_curve(start.positions, start.half_box)
@@ -67,6 +69,7 @@ def prepare(start: InitialState, rules: Rules, record: bool) -> World:
         rules=rules,
         totals=no_totals(),
         log=np.zeros(LOG_SIZE if record else 0, dtype=EVENT),
+        states=np.zeros(LOG_SIZE if record and states else 0, dtype=EVENT_STATE),
         scratch=Scratch(found=np.zeros(n + 2, dtype=np.uint32), lanes=aligned(1, CANDIDATES)),
     )
 

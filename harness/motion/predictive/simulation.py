@@ -33,6 +33,7 @@ class Simulation:
         pass through each other, and a pair event is the onset of touching)
     restitution : of elastic pair hits, 0 to 1; walls give everything back
     record : keep the events, for `events` and `take_events`
+    states : keep the states of their spheres as well, for `take_states`
     search : 'cells', 'lists', or None to choose by packing
 
     Raises
@@ -64,6 +65,7 @@ class Simulation:
         restitution: float = 1.0,
         *,
         record: bool = False,
+        states: bool = False,
         search: str | None = None,
     ) -> None:
         start = check(positions, velocities, radii, masses, half_box)
@@ -75,7 +77,8 @@ class Simulation:
         if search not in SEARCHES or (search == "lists" and size_classes(start.radii).max(initial=0) > 0):
             raise InputError(f'search "{search}" is not possible for these spheres')
         self._chunks: list[NDArray[np.void]] = []
-        self._world = prepare(start, make_rules(start, response, float(restitution), search), record)
+        self._states: list[NDArray[np.void]] = []
+        self._world = prepare(start, make_rules(start, response, float(restitution), search), record, states)
         self._start = start
         self._start_virial = self._momentum_by_position(start.positions)
         self.time = 0.0
@@ -135,6 +138,13 @@ class Simulation:
         """The recorded events, which are then forgotten here: to write a long run out piece by piece."""
         taken = self.events
         self._chunks = []
+        return taken
+
+    def take_states(self) -> NDArray[np.void]:
+        """The states of the recorded events not yet taken, one of `EVENT_STATE` each, which are then forgotten here."""
+        self._chunks.append(self._drain())
+        taken = np.concatenate(self._states)
+        self._states = []
         return taken
 
     # -- what was counted --------------------------------------------------------------------------------------------
@@ -213,6 +223,8 @@ class Simulation:
     def _drain(self) -> NDArray[np.void]:
         counts = self._world.totals.counts[0]
         chunk: NDArray[np.void] = self._world.log[: counts["recorded"]].copy()
+        if len(self._world.states):
+            self._states.append(self._world.states[: counts["recorded"]].copy())
         counts["recorded"] = 0
         return chunk
 

@@ -26,7 +26,7 @@ class SolidSimulation(Simulation):
     bodies : Bodies
     box : Box
     form : Form of the bodies
-    response, restitution, record : as of `Simulation`
+    response, restitution, record, states : as of `Simulation`
     tolerance : gap, relative to the mean size of two bodies, at which surfaces count as touching
     """
 
@@ -42,6 +42,7 @@ class SolidSimulation(Simulation):
         restitution: float = 1.0,
         *,
         record: bool = False,
+        states: bool = False,
         tolerance: float = 1e-6,
     ) -> None:
         # Spheres that meet when the shapes inside can be within the tolerance of each other
@@ -55,6 +56,7 @@ class SolidSimulation(Simulation):
             response,
             restitution,
             record=record,
+            states=states,
             search="cells",
         )
         # The narrow search takes the time, not the memory: there is no need to keep neighbours together

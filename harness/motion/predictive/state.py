@@ -115,6 +115,18 @@ ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align
 EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
 PAIR_EVENT, WALL_EVENT = 0, 1
 
+# The state of the one or two spheres of a recorded event, copied as it is: a place is that of the sphere's own time.
+EVENT_STATE = np.dtype(
+    [
+        ("now", np.float64),  # s, of the event
+        ("time", np.float64, 2),  # s, of the places
+        ("position", np.float64, (2, 3)),  # m
+        ("before", np.float64, (2, 3)),  # m/s
+        ("after", np.float64, (2, 3)),  # m/s
+    ],
+    align=True,
+)
+
 # Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that columns do
 # not overlap.
 LANES = 64
@@ -215,6 +227,7 @@ class World(NamedTuple):
     rules: Rules
     totals: Totals
     log: Records  # a chunk of recorded EVENTs; no room means no recording
+    states: Records  # the EVENT_STATE of each, or no room: then they are not kept
     scratch: Scratch
 
 
