@@ -1,8 +1,7 @@
-"""Make, check and ask sets of cases with proven times of impact.
+"""Make and check sets of cases with proven times of impact.
 
 `make` draws pairs of spinning bodies as a file declares them, and proves of each when they begin to touch; `check`
-proves every row of such a set anew, and exits 1 if one fails; `ask` puts the cases to engines, and says of each how
-many it answers right, misses, and reports late or early.
+proves every row of such a set anew, and exits 1 if one fails.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ DEFAULT_BUDGET = 7200.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command takes."""
-    actions = parser.add_subparsers(dest="action", required=True, metavar="make|check|ask")
+    actions = parser.add_subparsers(dest="action", required=True, metavar="make|check")
     make = actions.add_parser("make", help="draw cases and prove them", description="Draw cases and prove them.")
     make.add_argument("file", metavar="FILE", help="a declaration, such as experiments/truth/spinning.yaml")
     make.add_argument("--out", metavar="DIR", required=True, help="the folder to write")

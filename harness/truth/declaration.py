@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -10,7 +9,7 @@ from pydantic import Field, ValidationError
 
 from harness.errors import InputError, Problem
 from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
-from harness.experiment.document import LARGEST_FILE, read_document
+from harness.experiment.document import read_document
 from harness.experiment.mesh_location import locate_mesh
 from harness.experiment.number import Whole
 from harness.experiment.problems import FileProblems
@@ -18,7 +17,6 @@ from harness.experiment.schema import LARGEST_SEED, Declared, Positive, Text
 from harness.vocabulary import Shape
 
 MOST_CASES = 10**6
-_SIGN = re.compile(rb"^families\s*:", re.MULTILINE)
 
 
 class FamilySpec(Declared):
@@ -77,15 +75,6 @@ class TruthDeclaration(NamedTuple):
     families: dict[str, FamilySpec]
     meshes: dict[str, Path]
     problems: FileProblems
-
-
-def is_truth_declaration(path: Path) -> bool:
-    """Whether a file declares a set of cases, and no experiment: it has the key `families`."""
-    try:
-        with path.open("rb") as stream:
-            return _SIGN.search(stream.read(LARGEST_FILE)) is not None
-    except OSError:
-        return False
 
 
 def load_truth(path: Path) -> TruthDeclaration:

@@ -11,8 +11,10 @@ from harness.truth.declaration import TruthDeclaration
 
 _TEXT = """# {title}
 
-{question}Pairs of rigid bodies at constant velocity and constant spin, and when they begin to touch, proven. {number}
-cases: {touching} touch, {at_start} of them at the start; {never} never do in their window.
+{question}
+
+Pairs of rigid bodies at constant velocity and constant spin, and when they begin to touch, proven. {number} cases:
+{touching} touch, {at_start} of them at the start; {never} never do in their window.
 
 | family | cases | touch | declared |
 |---|---|---|---|
@@ -108,15 +110,15 @@ def readme(declaration: TruthDeclaration, cases: Cases, left_out: int, moved: in
     ]
     return _TEXT.format(
         title=declaration.spec.title,
-        question=f"{declaration.spec.question} " if declaration.spec.question else "",
+        question=declaration.spec.question or "When do two bodies begin to touch?",
         number=cases.number,
         touching=int(touches.sum()),
         at_start=int((cases.upper == 0.0).sum()),
         never=int((~touches).sum()),
         families="\n".join(rows),
-        left_out=f"Of the pairs drawn, {left_out} could not be proven, or touch at the very end of their window; "
-        f"others were drawn in their place. The engine of harness proposed where to look; of {moved} cases it was off\n"
-        f"by more than {widest:g} s, and the bounds were found without it.",
+        left_out=f"Of the pairs drawn, {left_out} could not be proven, or touch at the very end of their window; other "
+        f"ones were drawn in\ntheir place. The engine of harness proposed where to look; of {moved} cases it was "
+        f"off by more than {widest:g} s, and the bounds\nwere found without it.",
         widest=widest,
         reader=READER,
     )
