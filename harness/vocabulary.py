@@ -32,6 +32,19 @@ Response = Literal["reflect", "elastic", "none"]
 Status = Literal["ok", "failed", "timeout", "memory", "crashed", "rejected"]
 """How a run ended."""
 
+FAMILIES = {
+    "random": "any orientation, centres from 0.3 of what parts the bounding spheres to beyond it",
+    "aligned": "offset along a vertex, an edge or a face direction, and 1e-9 to 1e-3 rad off it",
+    "grazing": "first contact of two features, 1e-15 to 1e-2 of a size apart or overlapping",
+    "deep": "centres nearer than 0.3 of what parts the bounding spheres",
+    "contained": "one body within the other",
+    "shared": "a vertex, an edge or the plane of a face in common, or all of the body",
+    "sizes": "first contact of bodies whose sizes differ 10 to 10^4 times",
+    "far": "first contact at coordinates of 10^3 and 10^6 sizes",
+    "units": "random poses and first contacts of bodies of 1e-4 m and 1e4 m",
+}
+"""Families of poses of two bodies, in which backends go wrong in different ways."""
+
 WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
 """The six walls of a box, in the order in which they answer."""
 
@@ -53,7 +66,7 @@ class AlgorithmWord:
     stepped: bool = True
     own: bool = True
     kernels: bool = False
-    queries: tuple[Query, ...] = ("collision",)
+    queries: tuple[Query, ...] = tuple(QUERIES)
 
 
 ALGORITHMS: dict[str, AlgorithmWord] = {
@@ -68,13 +81,16 @@ ALGORITHMS: dict[str, AlgorithmWord] = {
         "from event to event: the next collision of every body is computed, not stepped to",
         stepped=False,
         kernels=True,
+        queries=("collision",),
     ),
 }
 
 if TYPE_CHECKING:
     Algorithm: TypeAlias = str
+    Family: TypeAlias = str
 else:
     Algorithm = Literal[tuple(ALGORITHMS)]
+    Family = Literal[tuple(FAMILIES)]
 
 DEFAULT_ALGORITHM: Algorithm = "brute-force"
 """What an experiment that names none is run with."""
@@ -185,7 +201,7 @@ class MethodName(NamedTuple):
     @property
     def knob(self) -> str:
         """The leaf that trades accuracy for time: "dt", "tolerance", or "" of a method that is exact."""
-        if self.stepped:
+        if self.stepped and self.query == "collision":
             return "dt"
         return "" if self.shape == "sphere" else "tolerance"
 

@@ -13,6 +13,7 @@ PACKAGE = Path(__file__).parents[1] / "harness"
 BASE = {
     "arrays",
     "child_process",
+    "cpu_time",
     "errors",
     "kernel",
     "kernel_cache",
@@ -43,7 +44,7 @@ KNOWS = {
     "pair": {"experiment", "scene", "narrowphase"},
     "cli": FLIGHT | {"experiment", "reference", "store", "compare", "truth", "runner", "replay", "report"},
 }
-LIBRARIES = {"fcl", "pybullet", "coal", "mujoco", "trimesh"}
+LIBRARIES = {"fcl", "pybullet", "coal", "igl", "ipctk", "mujoco", "py_parry3d", "pydrake", "rapier3d", "trimesh"}
 
 
 def rooms_imported(file: Path) -> set[str]:

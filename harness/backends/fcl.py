@@ -10,18 +10,27 @@ import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, FclObjects, size_ratio
+from harness.backends.fcl_pair_gaps import FclPairGaps
+from harness.backends.fcl_tree import FclTree
+from harness.backends.poses import Motion, impact_times, near_pairs, near_radii, require_finite
+from harness.backends.protocol import ImpactTimes, NearPairs
 from harness.scene.scene import Scene
-from harness.vocabulary import Shape
+from harness.vocabulary import Query, Shape
 
 # Up to so many bodies the pairs are kept in lists (8 MB), which saves a tenth of the time.
 MOST_LISTED = 1000
 
 
 class Fcl:
-    """Every pair, every frame. Methods of this program ask FCL about single pairs: see `FclPairTest`."""
+    """Whether pairs touch: every pair, every frame. Methods of this program ask it of single pairs: see `FclPairTest`.
+
+    How far apart pairs are, and when they meet, it is asked of those that its own tree of bounding spheres leaves,
+    grown by what is asked for; the tree's own distance query tells of the nearest pair alone.
+    """
 
     name = "fcl"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    queries: tuple[Query, ...] = ("collision", "tolerance", "distance", "impact")
     units = UNITS
     precision = "double"
     _size_ratio = 1.0
@@ -36,6 +45,10 @@ class Fcl:
         self._size_ratio = size_ratio(scene.bodies.sizes)
         self._tests = 0
         self._request = fcl.CollisionRequest()
+        self._scene = scene
+        self._tree: FclTree | None = None
+        self._tree_radii = scene.enclosing_radii
+        self._pair_gaps: FclPairGaps | None = None
         self._bodies = FclObjects(scene)
         first, second = self._both_sides()
         self._listed = (list(first), list(second)) if len(scene.bodies) <= MOST_LISTED else None
@@ -55,6 +68,35 @@ class Fcl:
         touching = list(compress(combinations(range(count), 2), verdicts))
         self._tests += count * (count - 1) // 2
         return np.array(touching, np.int64).reshape(-1, 2)
+
+    def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
+        require_finite(positions, quaternions)
+        pairs = self._close_pairs(positions, near_radii(self._scene.enclosing_radii, within))
+        self._tests += len(pairs)
+        return near_pairs(pairs, *self._single.gaps(pairs, positions, quaternions), within)
+
+    def impacts(
+        self, positions: Floats, quaternions: Floats, velocities: Floats, spins: Floats, duration: float
+    ) -> ImpactTimes:
+        """Late or early, and of meshes often wrong: what was measured stands at `FclPairGaps.impacts`."""
+        require_finite(positions, quaternions, velocities, spins)
+        motion = Motion(positions, quaternions, velocities, spins, duration)
+        pairs = self._close_pairs(motion.middle(), motion.swept_radii(self._scene.enclosing_radii))
+        self._tests += len(pairs)
+        return impact_times(self._single.impacts(pairs, motion), duration)
+
+    @property
+    def _single(self) -> FclPairGaps:
+        """What asks about single pairs; made when it is first needed, since it builds every mesh once more."""
+        if self._pair_gaps is None:
+            self._pair_gaps = FclPairGaps(self._scene)
+        return self._pair_gaps
+
+    def _close_pairs(self, centres: Floats, radii: Floats) -> Pairs:
+        """Pairs of spheres that touch, by FCL's tree, which is made anew when the radii change."""
+        if self._tree is None or not np.array_equal(radii, self._tree_radii):
+            self._tree, self._tree_radii = FclTree(self._scene, radii), radii
+        return self._tree.close_pairs(centres)
 
     def _both_sides(self) -> tuple[Iterable[fcl.CollisionObject], Iterable[fcl.CollisionObject]]:
         """The first and the second object of every pair, in order."""

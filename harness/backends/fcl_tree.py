@@ -9,7 +9,7 @@ import fcl
 import numpy as np
 from numpy.typing import ArrayLike
 
-from harness.arrays import Pairs
+from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import FclObjects
 from harness.scene.scene import Scene
 
@@ -20,14 +20,15 @@ class FclTree:
     Parameters
     ----------
     scene : Scene
+    radii : (n,) float array, m, of the spheres; without, those that hold the bodies
 
     Attributes
     ----------
     pair_tests : pairs put to the sphere test so far, those whose boxes overlap
     """
 
-    def __init__(self, scene: Scene) -> None:
-        bodies = replace(scene.bodies, sizes=2 * scene.enclosing_radii)
+    def __init__(self, scene: Scene, radii: Floats | None = None) -> None:
+        bodies = replace(scene.bodies, sizes=2 * (scene.enclosing_radii if radii is None else radii))
         spheres = Scene("sphere", scene.mesh, bodies, scene.box)
         self.pair_tests = 0
         # The tree returns other objects than it was given. A contact names geometries, so that a body is identified by

@@ -10,11 +10,13 @@ import mujoco
 import numpy as np
 
 from harness.arrays import Floats, Pairs
+from harness.backends.poses import near_pairs, require_finite
+from harness.backends.protocol import NearPairs
 from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
 from harness.scene.scene import Scene
-from harness.vocabulary import Shape
+from harness.vocabulary import Query, Shape
 
 # B for contacts (each takes some 600): of 64 neighbours a body, as only deep overlaps of unlike sizes have; memory that
 # is never touched costs nothing.
@@ -24,10 +26,19 @@ _CCD_TOLERANCE, _CCD_ITERATIONS = 1e-12, 200
 
 
 class MuJoCo:
-    """`mj_kinematics` and `mj_collision` once a call, margin 0: a contact is an overlap."""
+    """`mj_kinematics` and `mj_collision` once a call, margin 0: a contact is an overlap.
+
+    With the margin that is asked for a contact is a near pair, with its gap: MuJoCo culls by itself, and no call goes
+    through Python but one. `mj_geomDistance`, pair by pair, gives gaps no more exact (5e-8 of a size, for 3e-8), and
+    took 4 times as long even of 60 bodies in close packing, where nearly all of the time is in the pairs.
+
+    Lengths are told in units of the median size. No verdict of hulls depends on it: sizes of 1e-4 to 1e6 give the same
+    verdicts untold, and gaps as exact. But a mesh below 1e-5 is refused for its small volume.
+    """
 
     name = "mujoco"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    queries: tuple[Query, ...] = ("collision", "tolerance", "distance")
     approximations = {"mesh": "mujoco replaces each mesh by its convex hull: it knows no concave meshes"}  # noqa: RUF012
     units = UNITS
     precision = "poses double; hull vertices single"
@@ -45,9 +56,12 @@ class MuJoCo:
         return {size: self._read_back(body) for size, body in self._of_size.items()}
 
     def load(self, scene: Scene) -> None:
-        self._unit = unit_of(scene.bodies.sizes)
+        self._unit, self._scene = unit_of(scene.bodies.sizes), scene
+        self._compile(scene, _ARENA + _ARENA_A_BODY * len(scene.bodies))
+
+    def _compile(self, scene: Scene, arena: int) -> None:
         spec = mujoco.MjSpec()
-        spec.memory = _ARENA + _ARENA_A_BODY * len(scene.bodies)
+        spec.memory = self._arena = arena
         spec.option.ccd_tolerance = _CCD_TOLERANCE
         spec.option.ccd_iterations = _CCD_ITERATIONS
         # further contacts of a pair that touches already
@@ -60,16 +74,39 @@ class MuJoCo:
         self._data = mujoco.MjData(self._model)
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
-        if not (np.isfinite(positions).all() and np.isfinite(quaternions).all()):
-            raise ValueError("a pose is not finite")
+        if not self._collide(positions, quaternions, 0.0):
+            raise MemoryError("mujoco had no room for all contacts")
+        touching = np.sort(self._data.contact.geom, axis=1)  # a geom a body, in order
+        return np.unique(touching, axis=0).astype(np.int64).reshape(-1, 2)
+
+    def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
+        while not self._collide(positions, quaternions, within):
+            self._compile(self._scene, 2 * self._arena)
+        contacts = self._data.contact
+        swapped = contacts.geom[:, 0] > contacts.geom[:, 1]
+        # the normal points from the first geom to the second, and the position is halfway between the nearest points
+        half = 0.5 * contacts.dist[:, None] * contacts.frame[:, :3]
+        points = np.stack([contacts.pos - half, contacts.pos + half], axis=1) * self._unit
+        points[swapped] = points[swapped, ::-1]
+        order = np.lexsort([contacts.dist, *np.sort(contacts.geom, axis=1).T[::-1]])
+        pairs, first = np.unique(np.sort(contacts.geom, axis=1)[order], axis=0, return_index=True)
+        nearest = order[first]
+        return near_pairs(
+            pairs.astype(np.int64).reshape(-1, 2), contacts.dist[nearest] * self._unit, points[nearest], within
+        )
+
+    def _collide(self, positions: Floats, quaternions: Floats, margin: float) -> bool:
+        """Find the contacts of pairs up to a gap, m; False if there was no room for all."""
+        require_finite(positions, quaternions)
         model, data = self._model, self._data
+        # The margins of two geoms add up in MuJoCo 4.0, where half would do, in .82 of the time; in older versions the
+        # larger one counts, and none may lose a pair.
+        model.geom_margin[:] = margin / self._unit
         data.qpos[:] = np.hstack([positions / self._unit, quaternions]).ravel()
+        data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number = 0
         mujoco.mj_kinematics(model, data)
         mujoco.mj_collision(model, data)
-        if data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number:
-            raise MemoryError("mujoco had no room for all contacts")
-        touching = np.sort(data.contact.geom, axis=1)  # a geom a body, in order
-        return np.unique(touching, axis=0).astype(np.int64).reshape(-1, 2)
+        return not data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number
 
     def _add_body(self, spec: mujoco.MjSpec, scene: Scene, size: float) -> None:
         body = spec.worldbody.add_body()

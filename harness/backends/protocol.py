@@ -4,8 +4,8 @@ A file of this folder adds one by a class of this form and a line `BACKEND = Cla
 in the group `harness.backends`. It is then named by `engine.backend`, with its own pipeline as the algorithm. What the
 functions below ask for, a backend may have beside that.
 
-One that says `queries` answers more than whether bodies touch: with "tolerance" and "distance" it has the method of
-`Distances`, with "impact" that of `Impacts`.
+One that says `queries` answers more than whether bodies touch: with "distance" it has the method of `Distances`, with
+"tolerance" that or the one of `Near`, with "impact" that of `Impacts`.
 """
 
 from __future__ import annotations
@@ -91,6 +91,14 @@ class Distances(Backend, Protocol):
         quaternions : (n, 4) float array, unit, w x y z
         within : m
         """
+
+
+@runtime_checkable
+class Near(Backend, Protocol):
+    """A backend whose `queries` have "tolerance", and whose library decides it for less than it measures a gap."""
+
+    def near(self, positions: Floats, quaternions: Floats, within: float) -> Pairs:
+        """The pairs whose gap is at most `within`, m, sorted; parameters as for `Distances.distances`."""
 
 
 class Impacts(Backend, Protocol):

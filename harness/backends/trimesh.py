@@ -7,22 +7,29 @@ from __future__ import annotations
 
 import numpy as np
 import trimesh
-from scipy.spatial.transform import Rotation
 from trimesh.collision import CollisionManager
 
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, fcl_unit, size_ratio
+from harness.backends.poses import close_pairs, near_pairs, near_radii, require_finite, rotations
+from harness.backends.protocol import NearPairs
 from harness.errors import InputError
 from harness.scene.mesh import has_area
 from harness.scene.scene import Scene
-from harness.vocabulary import Shape
+from harness.vocabulary import Query, Shape
 
 
 class Trimesh:
-    """Poses set one by one, then all pairs that the manager finds in collision."""
+    """Poses set one by one, then all pairs that the manager finds in collision.
+
+    Of distances a manager tells only the smallest, and of one object only that to the nearest: to ask about a pair,
+    each body has a manager of its own beside. The pairs are those of bounding spheres that are near, by scipy's tree,
+    since the manager has no question for them.
+    """
 
     name = "trimesh"
     shapes: tuple[Shape, ...] = ("hull", "mesh")
+    queries: tuple[Query, ...] = ("collision", "tolerance", "distance")
     units = UNITS
     precision = "double"
     solid: tuple[Shape, ...] = ("mesh",)
@@ -38,7 +45,9 @@ class Trimesh:
         """Raises InputError for a hull that trimesh does not take for convex: it would hold its surface only."""
         self._unit = fcl_unit(scene.bodies.sizes)
         self._size_ratio = size_ratio(scene.bodies.sizes)
+        self._radii = scene.enclosing_radii
         self._manager = CollisionManager()
+        self._single: list[CollisionManager] = []
         solids: dict[float, trimesh.Trimesh] = {}
         for body, size in enumerate(scene.bodies.sizes.tolist()):
             if size not in solids:
@@ -48,17 +57,35 @@ class Trimesh:
                 if scene.shape == "hull" and not solids[size].is_convex:
                     raise InputError("it does not take this hull for convex, and would hold its surface only")
             self._manager.add_object(body, solids[size])
+        self._solids = [solids[size] for size in scene.bodies.sizes.tolist()]
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
-        if not (np.isfinite(positions).all() and np.isfinite(quaternions).all()):
-            raise ValueError("a pose is not finite")
-        poses = np.tile(np.eye(4), (len(positions), 1, 1))
-        poses[:, :3, :3] = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]]).as_matrix()
-        poses[:, :3, 3] = positions / self._unit
-        for body, pose in enumerate(poses):
+        for body, pose in enumerate(self._poses(positions, quaternions)):
             self._manager.set_transform(body, pose)
         _, touching = self._manager.in_collision_internal(return_names=True)
         return np.array(sorted(touching), np.int64).reshape(-1, 2)
+
+    def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
+        if not self._single:
+            self._single = [CollisionManager() for _ in self._solids]
+            for body, solid in enumerate(self._solids):
+                self._single[body].add_object(body, solid)
+        for body, pose in enumerate(self._poses(positions, quaternions)):
+            self._single[body].set_transform(body, pose)
+        pairs = close_pairs(positions, near_radii(self._radii, within))
+        gaps, points = np.empty(len(pairs)), np.empty((len(pairs), 2, 3))
+        for k, (i, j) in enumerate(pairs.tolist()):
+            gaps[k], found = self._single[i].min_distance_other(self._single[j], return_data=True)
+            points[k] = found.point(i), found.point(j)
+        return near_pairs(pairs, gaps * self._unit, points * self._unit, within)
+
+    def _poses(self, positions: Floats, quaternions: Floats) -> Floats:
+        """(n, 4, 4)."""
+        require_finite(positions, quaternions)
+        poses = np.tile(np.eye(4), (len(positions), 1, 1))
+        poses[:, :3, :3] = rotations(quaternions).as_matrix()
+        poses[:, :3, 3] = positions / self._unit
+        return poses
 
 
 BACKEND = Trimesh

@@ -4,70 +4,55 @@ Bodies belong to levels, the largest first. Every level has a lattice of its own
 least as large as its largest body, so that two of its bodies touch only from the same cell or from neighbouring ones.
 The cells of all levels are numbered on, so that one counting sort a frame puts every body in its place. The uniform
 grid has one level.
-
-A row of cells along z ends with a cell that is always empty, a plane with such a row, and a lattice with such a plane.
-They are the missing neighbours of the cells at the border: no neighbour needs a question whether it exists, and three
-neighbours along z are one run of bodies.
 """
 
-import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
-from harness.broadphase.pairs import Keys, require_finite, touching
+from harness.broadphase.lanes import LANES, lanes_within, lowest_bit
+from harness.broadphase.levels import SLACK, Level, Levels, block_around, cell_at, cells_covered, fit_lattices
+from harness.broadphase.pairs import NEARLY, Keys, require_finite, touching
 from harness.kernel import inner, kernel
 
 Ints = NDArray[np.int32]
-Levels = NDArray[np.void]
-Level = Any  # one record of Levels, whose fields mypy does not know
 
-LEVEL = np.dtype(
-    [
-        ("reach", np.float64),  # m, the largest radius
-        ("budget", np.int64),  # cells it may have
-        ("begin", np.int64),  # its bodies have the slots from here
-        ("end", np.int64),  # up to here
-        ("first", np.int64),  # its first cell
-        ("cells", np.int64),  # how many it has
-        ("row", np.int64),  # from a cell to its neighbour along y
-        ("plane", np.int64),  # from a cell to its neighbour along x
-        *((f"low_{axis}", np.float64) for axis in "xyz"),  # m, where the lattice starts
-        *((f"last_{axis}", np.float64) for axis in "xyz"),  # the last cell along the axis, counted from 0
-        *((f"scale_{axis}", np.float64) for axis in "xyz"),  # 1/m, cells a length
-    ]
-)
+GATHERED = 256
+"""Bodies whose places are gathered at a time. A loop that does nothing else keeps many reads of memory under way."""
 
-SLACK = 1e-6
-"""Relative surplus of a cell over its largest body: more than rounding can do to fewer than 1e9 cells along an axis."""
+RUNS = 5
+"""Of three cells along z, with whose bodies one of the same level is compared: its own, and four later neighbours."""
 
 
 class Cells(NamedTuple):
-    """The bodies of a frame, sorted by cell. A slot is a body's place in the order by level, then cell, then number.
+    """The bodies of a frame, sorted by cell. A slot is a body's place in the order by level, then cell.
 
     Attributes
     ----------
-    radii : (n,) m
-    members : (n,) the bodies by level, each level's in ascending order
+    members : (n,) the bodies by level, each level's as they were sorted in the last frame: those that are near each
+        other in the box then are near each other in memory. Rewritten
     levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written every frame
     start : (sum of budgets + 1,) written: the first slot of each cell
     cell_of : (n,) written: each member's cell
+    places : (n, 4) written: each member's x, y, z and radius, m
     slots : (n, 2) written: each slot's cell and body
-    spheres : (n, 4) written: each slot's x, y, z and radius, m
+    spheres : (n, 4) rewritten: each slot's x, y, z and radius, m
+    columns : (3, n + LANES) written: each slot's x, y and z once more, m, to be compared several at once
     """
 
-    radii: Floats
     members: Ints
     levels: Levels
     start: Ints
     cell_of: Ints
+    places: Floats
     slots: Ints
     spheres: Floats
+    columns: Floats
 
 
-Arrays = tuple[Floats, Ints, Levels, Ints, Ints, Ints, Floats]
+Arrays = tuple[Ints, Levels, Ints, Ints, Floats, Ints, Floats, Floats]
 
 
 class Found(NamedTuple):
@@ -75,17 +60,6 @@ class Found(NamedTuple):
 
     close: int
     tests: int
-
-
-class Block(NamedTuple):
-    """A block of cells: the first and the last along each axis."""
-
-    x0: int
-    x1: int
-    y0: int
-    y1: int
-    z0: int
-    z1: int
 
 
 @kernel
@@ -117,132 +91,85 @@ def close_pairs(positions: Floats, half: Floats, bodies: Arrays, keys: Keys) -> 
 
 
 @kernel
-def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
-    """Spread each level's lattice over the part of the box where bodies are.
-
-    Bodies beyond the walls belong to the border cells, so that one that has shot far out does not thin out the lattice.
-    """
-    x, wide = span(positions[:, 0], half[0])
-    y, deep = span(positions[:, 1], half[1])
-    z, tall = span(positions[:, 2], half[2])
-    first = 0
-    for index in range(len(levels)):
-        level = levels[index]
-        level.low_x, level.low_y, level.low_z = x, y, z
-        fit_cells(level, wide, deep, tall)
-        level.first = first
-        first += level.cells
-
-
-@kernel
-def span(coordinates: Floats, half: float) -> tuple[float, float]:
-    """Where the bodies begin along an axis of the box, m, and over which length they spread."""
-    low, high = half, -half
-    for i in range(len(coordinates)):
-        low = min(low, coordinates[i])
-        high = max(high, coordinates[i])
-    low = max(low, -half)
-    return low, max(0.0, min(high, half) - low)
-
-
-@kernel
-def fit_cells(level: Level, wide: float, deep: float, tall: float) -> None:
-    """Choose equal cells, cubes or nearly, that hold a body of the level, but no more of them than its budget."""
-    edge = 2.0 * level.reach * (1.0 + SLACK)
-    while True:
-        nx, ny, nz = cells_along(wide, edge), cells_along(deep, edge), cells_along(tall, edge)
-        excess = (nx + 1.0) * (ny + 1.0) * (nz + 1.0) / level.budget
-        if excess <= 1.0:
-            break
-        edge *= max(1.02, excess ** (1.0 / ((nx > 1.0) + (ny > 1.0) + (nz > 1.0))))
-    level.row = int(nz) + 1
-    level.plane = level.row * (int(ny) + 1)
-    level.cells = level.plane * (int(nx) + 1)
-    level.last_x, level.last_y, level.last_z = nx - 1.0, ny - 1.0, nz - 1.0
-    level.scale_x = nx / wide if nx > 1.0 else 0.0
-    level.scale_y = ny / deep if ny > 1.0 else 0.0
-    level.scale_z = nz / tall if nz > 1.0 else 0.0
-
-
-@kernel
-def cells_along(length: float, edge: float) -> float:
-    """How many cells fit, at least one."""
-    return max(1.0, math.floor(length / edge))
-
-
-@kernel
-def cell_at(level: Level, x: float, y: float, z: float) -> int:
-    """The level's cell at a point, m; beyond the border, the nearest."""
-    ix = cell_along(x, level.low_x, level.scale_x, level.last_x)
-    iy = cell_along(y, level.low_y, level.scale_y, level.last_y)
-    iz = cell_along(z, level.low_z, level.scale_z, level.last_z)
-    return int(level.first + ix * level.plane + iy * level.row + iz)
-
-
-@kernel
-def cell_along(x: float, low: float, scale: float, last: float) -> int:
-    """Cell along an axis. It never decreases with x, whatever is rounded: `block_around` relies on it."""
-    return int(min(max((x - low) * scale, 0.0), last))
-
-
-@kernel
-def block_around(level: Level, x: float, y: float, z: float, reach: float) -> Block:
-    """The level's cells within reach of a point along each axis: no body there is in any other cell."""
-    return Block(
-        cell_along(x - reach, level.low_x, level.scale_x, level.last_x),
-        cell_along(x + reach, level.low_x, level.scale_x, level.last_x),
-        cell_along(y - reach, level.low_y, level.scale_y, level.last_y),
-        cell_along(y + reach, level.low_y, level.scale_y, level.last_y),
-        cell_along(z - reach, level.low_z, level.scale_z, level.last_z),
-        cell_along(z + reach, level.low_z, level.scale_z, level.last_z),
-    )
-
-
-@kernel
 def sort_by_cell(positions: Floats, cells: Cells) -> None:
     """Counting sort: count the bodies of each cell, sum up to each cell's end, fill each cell from its end."""
-    radii, members, levels, start, cell_of, slots, spheres = cells
+    members, levels, start, cell_of, places, slots, spheres, columns = cells
     used = levels[-1].first + levels[-1].cells
     start[: used + 1] = 0
     for index in range(len(levels)):
         level = levels[index]
-        for member in range(level.begin, level.end):
-            i = members[member]
-            cell = cell_at(level, positions[i, 0], positions[i, 1], positions[i, 2])
-            cell_of[member] = cell
-            start[cell] += 1
+        for begin in range(level.begin, level.end, GATHERED):
+            end = min(begin + GATHERED, level.end)
+            gather(positions, cells, begin, end)
+            for member in range(begin, end):
+                cell = cell_at(level, places[member, 0], places[member, 1], places[member, 2])
+                cell_of[member] = cell
+                start[cell] += 1
     end = 0
     for cell in range(used + 1):
         end += start[cell]
         start[cell] = end
     for member in range(len(members) - 1, -1, -1):
-        i, cell = members[member], cell_of[member]
+        cell = cell_of[member]
         slot = start[cell] - 1
         start[cell] = slot
-        slots[slot, 0], slots[slot, 1] = cell, i
+        slots[slot, 0], slots[slot, 1] = cell, members[member]
         for axis in range(3):
-            spheres[slot, axis] = positions[i, axis]
-        spheres[slot, 3] = radii[i]
+            columns[axis, slot] = places[member, axis]
+        for number in range(4):
+            spheres[slot, number] = places[member, number]
+    for slot in range(len(members)):
+        members[slot] = slots[slot, 1]
+
+
+@kernel
+def gather(positions: Floats, cells: Cells, begin: int, end: int) -> None:
+    """Write the places of some members, whose radii stand where they were sorted last."""
+    members, places, spheres = cells.members, cells.places, cells.spheres
+    for member in range(begin, end):
+        i = members[member]
+        for axis in range(3):
+            places[member, axis] = positions[i, axis]
+        places[member, 3] = spheres[member, 3]
 
 
 @kernel
 def pairs_within(level: Level, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
     """Each body with those after it in its own cell, and with the later half of the neighbouring cells.
 
+    The first bodies of all runs are compared before any pair is noted, as whether one is near cannot be foreseen, and a
+    branch for each run would be mispredicted.
+
     Parameters and answer: `close` pairs and `tests` so far, and with those of this level.
     """
-    start, slots, spheres = cells.start, cells.slots, cells.spheres
+    start, slots, spheres, columns = cells.start, cells.slots, cells.spheres, cells.columns
     row, plane = level.row, level.plane
+    begins, ends = np.empty(RUNS, np.int64), np.empty(RUNS, np.int64)
     for slot in range(level.begin, level.end):
         cell = slots[slot, 0]
-        end = start[cell + 2]
-        close = compare(slot, slot + 1, end, slots, spheres, keys, close)
-        tests += max(0, end - slot - 1)
-        for neighbour in range(4):
-            middle = cell + row if neighbour == 0 else cell + plane + (neighbour - 2) * row
+        x, y, z = spheres[slot, 0], spheres[slot, 1], spheres[slot, 2]
+        square = NEARLY * (spheres[slot, 3] + level.reach) ** 2
+        near, longest = 0, 0
+        for run in range(RUNS):
+            middle = cell + (row if run == 1 else plane + (run - 3) * row)
             begin, end = start[middle - 1], start[middle + 2]
-            close = compare(slot, begin, end, slots, spheres, keys, close)
-            tests += end - begin
+            if run == 0:
+                begin = slot + 1
+                end = max(begin, start[cell + 2])
+            begins[run], ends[run] = begin, end
+            bodies = end - begin
+            within = lanes_within(columns, begin, x, y, z, square) & ((1 << min(bodies, LANES)) - 1)
+            near |= within << (run * LANES)
+            longest = max(longest, bodies)
+            tests += bodies
+        while near != 0:
+            bit = lowest_bit(near)
+            near &= near - 1
+            other = begins[bit // LANES] + bit % LANES
+            close = compare(slot, other, other + 1, slots, spheres, keys, close)
+        if longest > LANES:
+            for run in range(RUNS):
+                close = compare(slot, begins[run] + LANES, ends[run], slots, spheres, keys, close)
     return Found(close, tests)
 
 
@@ -273,12 +200,6 @@ def expected_work(seekers: Level, others: Level) -> float:
     rows = cells_covered(reach, others.scale_x, others.last_x) * cells_covered(reach, others.scale_y, others.last_y)
     bodies = cells_covered(reach, others.scale_z, others.last_z) * (others.end - others.begin) / others.cells
     return float((seekers.end - seekers.begin) * (4.0 + rows * (1.0 + bodies)))  # 4: to find the first cell
-
-
-@kernel
-def cells_covered(reach: float, scale: float, last: float) -> float:
-    """Cells along an axis within reach of a point, on average, m and 1/m."""
-    return min(1.0 + 2.0 * reach * scale, 1.0 + last)
 
 
 @inner

@@ -19,6 +19,9 @@ Keys = NDArray[np.int64]  # (k,) i << 32 | j of pairs
 # Squares of radii, and of distances as small, must neither overflow nor vanish.
 SMALLEST, LARGEST = 1e-150, 1e150
 
+NEARLY = 1.0 + 1e-6
+"""Spheres whose distance squared exceeds their reach squared by this factor do not touch, whatever is rounded."""
+
 
 class BroadPhase(Protocol):
     """A method that finds close pairs, frame after frame, of the same bodies.

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
-from harness.broadphase.cells import span
+from harness.broadphase.levels import span
 from harness.broadphase.pairs import (
+    NEARLY,
     SMALLEST,
     Keys,
     checked_positions,
@@ -57,9 +58,6 @@ with which a frame of 1e5 bodies takes 30 % longer."""
 
 SLACK = 2.0**-49
 """Relative surplus of an interval: more than rounding can do to its ends and to the test of two spheres."""
-
-NEARLY = 1.0 + 1e-6
-"""Spheres whose distance squared exceeds their reach squared by this factor do not touch, whatever is rounded."""
 
 MOST_MOVES = 4
 """Places that insertion sort may move a body, on average, before a full sort is quicker. Bodies that fly a sixtieth of

@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
 from harness.broadphase import cells
+from harness.broadphase.lanes import LANES
+from harness.broadphase.levels import LEVEL, Levels
 from harness.broadphase.pairs import checked_positions, checked_radii, unpack
 from harness.scene.box import Box
 
@@ -35,15 +37,17 @@ class UniformGrid:
         levels = plan_levels(self.radii[members], level[members])
         self._half = np.array(box.half, np.float64)
         self._arrays: cells.Arrays = (
-            self.radii,
             members.astype(np.int32),
             levels,
             np.empty(int(levels["budget"].sum()) + 1, np.int32),
             np.empty(count, np.int32),
+            np.empty((count, 4)),
             np.empty((count, 2), np.int32),
             np.zeros((count, 4)),
+            np.zeros((3, count + LANES)),
         )
         self._cells = cells.Cells(*self._arrays)
+        self._cells.spheres[:, 3] = self.radii[members]
         self._keys = np.empty(count + 1, np.int64)
 
     def size_classes(self) -> NDArray[np.int64]:
@@ -77,7 +81,7 @@ class UniformGrid:
         return overlapped.most, overlapped.total / max(1, len(self.radii))
 
 
-def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
+def plan_levels(radii: Floats, level: NDArray[np.int64]) -> Levels:
     """(levels,) of LEVEL from the bodies in the order of their level: how large, whose slots, how many cells.
 
     Half of the cells are shared out by population. The other half equally, or the lattice of a few large bodies among
@@ -86,7 +90,7 @@ def plan_levels(radii: Floats, level: NDArray[np.int64]) -> cells.Levels:
     count = len(level)
     _, begin = np.unique(level, return_index=True)
     begin = begin if count else np.zeros(1, np.int64)
-    levels = np.zeros(len(begin), cells.LEVEL)
+    levels = np.zeros(len(begin), LEVEL)
     levels["begin"] = begin
     levels["end"] = np.append(begin[1:], count)
     levels["reach"] = np.maximum.reduceat(radii, begin) if count else 1.0

@@ -18,7 +18,8 @@ from harness.cli.overrides import add_override_argument, overrides_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from harness.compare.document import Reduced
+    from harness.compare.atlas import Cell
+    from harness.compare.document import Known, Reduced
     from harness.compare.outcome import Case, Comparison, Failure
     from harness.scene.mesh import Mesh
 
@@ -53,7 +54,18 @@ def run(arguments: argparse.Namespace) -> int:
     import json
     import sys
 
-    from harness.cli.crosscheck import SAVED, SHOWN, WHOLE, backends_of, cross_check, kept, key_of, reductions
+    from harness.cli.crosscheck import (
+        SAVED,
+        SHOWN,
+        WHOLE,
+        backends_of,
+        cross_check,
+        event_methods,
+        kept,
+        key_of,
+        reductions,
+    )
+    from harness.cli.surveying import cell_row, cell_text, engines, survey_key, surveyed
     from harness.compare.budget import Budget
     from harness.compare.document import document
     from harness.compare.outcome import Comparison
@@ -69,30 +81,46 @@ def run(arguments: argparse.Namespace) -> int:
     whole = Comparison()
     rows: list[tuple[Reduced, bool]] = []
     keep = []
+    known: Known = {}
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
         budget.left_out.append(f"of the poses of each scene one in {budget.every} was asked about")
+    cells: list[Cell] = []
     for experiment in experiments:
+        if experiment.measure.families:
+            found_of = surveyed(experiment, meshes, engines(chosen), budget, progress)
+            whole.add(found_of.found)
+            rows += [(row, True) for row in found_of.rows]
+            cells += found_of.atlas.cells
+            keep += [
+                (experiment.name, pair, survey_key(experiment, meshes, pair[0]), document_of)
+                for pair, document_of in found_of.documents()
+            ]
+            continue
         names, lacking = backends_of(experiment, chosen)
+        events = event_methods(experiment, chosen)
         whole.unsupported += lacking
-        progress(f"{experiment.name}: {', '.join(names)}")
-        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget):
-            small = reductions(found, meshes, SAVED if arguments.save else SHOWN)
+        progress(f"{experiment.name}: {', '.join((*names, *events))}")
+        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget, events):
+            small = reductions(found, meshes, SAVED if arguments.save else SHOWN, known)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
             keep.append(
                 (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE, budget), kept(experiment, found, small))
             )
             whole.add(found)
-    whole.left_out += budget.left_out
+    whole.left_out += [line for line in budget.left_out if line not in whole.left_out]
     # as `document` has them: what one backend loses first, then what both share
     ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
     files = _saved(ordered, meshes, arguments.save) if arguments.save else {}
     if arguments.json:
-        json.dump(document(whole, ordered, files), sys.stdout, allow_nan=False)
+        atlas = {"atlas": [cell_row(cell) for cell in cells]} if cells else {}
+        json.dump(document(whole, ordered, files) | atlas, sys.stdout, allow_nan=False)
         print()
         for line in whole.unsupported + whole.left_out:
             progress(line)
     else:
+        for cell in cells:
+            print(cell_text(cell))
         _print(whole)
     for row in ordered:
         if row.tried and row.small is None:
@@ -117,7 +145,7 @@ def _chosen(text: str | None) -> tuple[str, ...]:
         if backend not in names():
             hint = near(backend, names()) or f"; there are {listed(names())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
-        possible = [word for word in algorithms_of(backend) if ALGORITHMS[word].stepped and ALGORITHMS[word].own]
+        possible = [word for word in algorithms_of(backend) if ALGORITHMS[word].own]
         if stroke and algorithm not in possible:
             hint = near(algorithm, possible) or (f"; there are {listed(possible)}" if possible else "")
             raise InputError(f"--backends: {backend} cannot be asked at poses with algorithm {shown(algorithm)}{hint}")
@@ -154,19 +182,30 @@ def _saved(rows: list[Reduced], meshes: dict[Path, Mesh], folder: str) -> dict[i
     from pathlib import Path
 
     from harness.compare.reproduction import save
+    from harness.compare.script import script_of
 
     files: dict[int, str] = {}
     for place, row in enumerate(rows):
         if row.small is not None:
             mesh = next((path for path, opened in meshes.items() if opened is row.case.scene.mesh), None)
-            files[place] = str(save(row.small, Path(folder), f"{row.name}-{place}", mesh))
+            path = save(row.small, Path(folder), f"{row.name}-{place}", mesh, script_of(row.small))
+            files[place] = str(path)
     return files
 
 
 def _print(found: Comparison) -> None:
+    from harness.vocabulary import MethodName
+
     kinds = ("agree", "undecided", "containment", "approximation", "real")
     for tally in found.tallies:
         counts = ", ".join(f"{kind} {getattr(tally, kind)}" for kind in kinds)
+        if not MethodName.read(tally.backends[1], tally.shape).stepped:
+            print(
+                f"{tally.backends[1]}, {tally.shape}: {tally.verdicts} contacts that begin within {tally.poses} frames "
+                f"while bodies approach, without response, each held against exact arithmetic: agree {tally.agree}, "
+                f"undecided {tally.undecided}, real {tally.real}"
+            )
+            continue
         print(
             f"{' and '.join(tally.backends)}, {tally.shape}: {tally.verdicts} verdicts at {tally.poses} poses: {counts}"
         )

@@ -18,7 +18,8 @@ from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.compare.budget import Budget
 from harness.compare.comparison import compare_all
-from harness.compare.document import Reduced, document, reduced, shown_case
+from harness.compare.document import Known, Reduced, document, reduced, shown_case
+from harness.compare.event_audit import FRAMES, audit_events
 from harness.compare.free_running import run_both
 from harness.compare.hard_poses import hard_poses
 from harness.compare.outcome import Comparison
@@ -84,10 +85,20 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[t
     lacking = {name: why for name in wanted if (why := missing(name.partition("/")[0])) is not None}
     if chosen and lacking:
         raise InputError("\n".join(lacking.values()))
-    left = tuple(name for name in wanted if name not in lacking)
-    if len(left) < 2:
+    left = tuple(name for name in wanted if name not in lacking and _stepped(name))
+    if len(left) + len(event_methods(experiment, chosen)) < 2:
         raise InputError(f"{experiment.path}: nothing to compare; {'; '.join(lacking.values())}")
     return left, list(lacking.values())
+
+
+def event_methods(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """The methods that compute events, of those chosen, or else of the experiment; without verdicts on poses."""
+    named = dict.fromkeys(MethodName.of(point.parameters).short for point in experiment.points)
+    return tuple(name for name in (chosen or named) if not _stepped(name))
+
+
+def _stepped(name: str) -> bool:
+    return MethodName.read(name, "hull").stepped  # which it is does not depend on the shape
 
 
 def cross_check(
@@ -97,9 +108,18 @@ def cross_check(
     extent: Extent,
     progress: Callable[[str], None] = lambda line: None,
     budget: Budget | None = None,
+    events: tuple[str, ...] = (),
 ) -> Iterator[tuple[tuple[str, str], Comparison]]:
-    """Every two backends with what was found of them; each was asked once a pose for all of them."""
+    """Every two backends with what was found of them; each was asked once a pose for all of them.
+
+    What computes events is held against the judge on the same motion, as `harness.compare.event_audit` says.
+    """
     budget = budget or Budget()
+    for name in events:
+        progress(f"{name}: contacts of the same motion")
+        yield (FRAMES, name), _events(experiment, meshes, name, extent, budget)
+    if len(names) < 2:
+        return
     compared = compare_all(_pose_sets(experiment, meshes, extent), names, progress, budget=budget)
     for pair, found in compared.items():
         free = next((point for point in experiment.points if point.motion.response != "none"), None)
@@ -110,6 +130,9 @@ def cross_check(
                 continue
             motion = free.motion
             frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
+            if budget.every > 1:
+                frames = max(1, frames // budget.every)
+                budget.left_out.append(f"{pair[0]} and {pair[1]} in flight: no more than {frames} frames are flown")
             progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
             found.add(
                 run_both(
@@ -119,10 +142,10 @@ def cross_check(
         yield pair, found
 
 
-def reductions(found: Comparison, meshes: Meshes, most: int) -> list[Reduced]:
-    """The cases of a comparison, the first `most` of every backend made smaller."""
+def reductions(found: Comparison, meshes: Meshes, most: int, known: Known | None = None) -> list[Reduced]:
+    """The cases of a comparison, the first `most` of every backend made smaller, if that is not `known` already."""
     names = {id(mesh): path.name for path, mesh in meshes.items()}
-    return reduced(found, names, most)
+    return reduced(found, names, most, known)
 
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:
@@ -143,6 +166,22 @@ def key_of(
     limits = [budget.seconds, budget.every] if budget and (budget.seconds or budget.every > 1) else []
     content = json.dumps([points, pair, repr(extent), package_versions(packages()), *limits])
     return hashlib.sha256(content.encode()).hexdigest()
+
+
+def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:
+    """A method that computes events, on every motion of the experiment."""
+    whole, seen = Comparison(), set()
+    for point in experiment.points:
+        moved = repr((point.scene, point.motion.duration, point.motion.dt, point.engine.tolerance))
+        if moved in seen:
+            continue
+        seen.add(moved)
+        scene = _scene(experiment, point, meshes)
+        frames = None if scene is None else extent.frames(point, len(scene.bodies))
+        if scene is not None and frames is not None:
+            dt, tolerance = point.motion.dt, point.engine.tolerance
+            whole.add(audit_events(scene, name, max(1, frames // budget.every), dt, tolerance, budget))
+    return whole
 
 
 def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterator[PoseSet]:

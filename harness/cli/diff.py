@@ -11,6 +11,7 @@ import argparse
 import json
 import math
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.streams import speaks_unicode
@@ -32,7 +33,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="exit 1 if a point is slower, or if a counter, a status or a verdict changed; can be given again",
     )
-    parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="one JSON document on standard output")
+    form.add_argument(
+        "--format",
+        choices=["text", "markdown"],
+        default="text",
+        help="markdown: for the comment on a change (default: %(default)s)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -41,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     found = difference(arguments.db, arguments.before, arguments.after)
     if arguments.json:
         print(json.dumps(_document(found), ensure_ascii=not speaks_unicode(sys.stdout), allow_nan=False))
+    elif arguments.format == "markdown":
+        print(_markdown(found))
     else:
         _say(found)
     failed = ("slower" in arguments.fail_on and found.counts["slower"]) or (
@@ -55,18 +65,73 @@ def _say(found: Difference) -> None:
     for point in found.points:
         told = _told(point)
         if told:
-            print(f"{point.experiment}{f' ({point.label})' if point.label else ''}: {'; '.join(told)}")
+            print(f"{_place(point)}: {'; '.join(told)}")
     for verdict in found.verdicts:
         print(f"{verdict.experiment}: {verdict.before} before, {verdict.after} now: {verdict.statement}")
-    counts = found.counts
+    for line in _totals(found):
+        print(line)
+
+
+def _totals(found: Difference) -> list[str]:
+    """How much differs, and what all points have in common."""
+    counts, lines = found.counts, []
     if found.drift is not None:
-        print(f"all points together took {found.drift:.3g} times as long: {_drift_text(found.drift)}")
-    print(
+        lines.append(f"all points together took {found.drift:.3g} times as long: {_drift_text(found.drift)}")
+    lines.append(
         f"{len(found.points)} points measured by both: {counts['slower']} slower, {counts['faster']} faster, "
         f"{counts['same']} not to be told apart (by less than {100 * found.floor:.0f} %), "
         f"{counts['unknown']} with too few repeats to tell; {counts['changed']} changed; "
         f"{found.untouched} not measured again"
     )
+    return lines
+
+
+def _markdown(found: Difference) -> str:
+    """The same for a page that shows Markdown: what differs as tables, what all of it comes to in a line."""
+    before, after = found.before, found.after
+    lines = [
+        f"**Sweep {before.id}** ({_commit(before.commit)}) against **sweep {after.id}** ({_commit(after.commit)}): "
+        f"{found.counts['slower']} slower, {found.counts['faster']} faster, {found.counts['changed']} changed "
+        f"of {len(found.points)} points",
+        "",
+    ]
+    paced = [point for point in found.points if point.pace in ("slower", "faster")]
+    rows = [
+        (
+            _place(point),
+            f"{point.before:.3g} s",
+            f"{point.after:.3g} s",
+            f"**{point.ratio.median:.3g}×** [{point.ratio.low:.3g}, {point.ratio.high:.3g}]",
+        )
+        for point in paced
+    ]
+    lines += _table(("point", "before", "after", "ratio"), rows)
+    changed = [(_place(point), "; ".join(_told(point, pace=False))) for point in found.points if point.changed]
+    lines += _table(("point", "changed"), changed)
+    judged = [(row.experiment, row.before, row.after, row.statement) for row in found.verdicts]
+    lines += _table(("experiment", "before", "now", "statement"), judged)
+    return "\n".join([*lines, *(f"- {line}" for line in _totals(found))])
+
+
+def _table(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """A Markdown table; nothing without rows."""
+    if not rows:
+        return []
+    cells = [heading, ["---"] * len(heading), *rows]
+    return [*("| " + " | ".join(_cell(cell) for cell in row) + " |" for row in cells), ""]
+
+
+def _cell(text: str) -> str:
+    """Text that can neither end its cell nor become markup of its own."""
+    return text.replace("\\", "\\\\").replace("|", "\\|").replace("<", "&lt;").replace("\n", " ")
+
+
+def _place(point: PointDifference) -> str:
+    return f"{point.experiment}{f' ({point.label})' if point.label else ''}"
+
+
+def _commit(commit: str | None) -> str:
+    return f"`{commit[:12]}`" if commit else "no commit"
 
 
 def _drift_text(drift: float) -> str:
@@ -77,10 +142,10 @@ def _drift_text(drift: float) -> str:
     return f"more than a machine drifts; {MOST_DRIFT:.3g} times is taken out of every ratio"
 
 
-def _told(point: PointDifference) -> list[str]:
+def _told(point: PointDifference, *, pace: bool = True) -> list[str]:
     """What is different about a point; nothing where it is the same."""
     told = []
-    if point.pace in ("slower", "faster"):
+    if pace and point.pace in ("slower", "faster"):
         told.append(
             f"{point.pace}, {point.before:.3g} s to {point.after:.3g} s, {point.ratio.median:.3g} times "
             f"[{point.ratio.low:.3g}, {point.ratio.high:.3g}]{'' if point.ratio.coverage else ' (range)'}"

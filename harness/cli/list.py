@@ -1,11 +1,11 @@
-"""Print experiments, backends, algorithms and metrics with their units."""
+"""Print experiments, backends, algorithms, queries and who answers them, and metrics with their units."""
 
 from __future__ import annotations
 
 import argparse
 from typing import Any
 
-from harness.vocabulary import ALGORITHMS
+from harness.vocabulary import ALGORITHMS, QUERIES, Query, algorithms_of
 
 FOLDER = "experiments"
 
@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the experiments, backends, algorithms and metrics that there are."""
+    """Print the experiments, backends, algorithms, queries and metrics that there are."""
     import json
 
     if arguments.schema:
@@ -26,10 +26,12 @@ def run(arguments: argparse.Namespace) -> int:
 
         print(json.dumps(json_schema(), indent=2))
         return 0
-    listing = {
+    backends = _backends()
+    listing: dict[str, list[dict[str, Any]]] = {
         "experiments": _experiments(),
-        "backends": _backends(),
+        "backends": backends,
         "algorithms": [{"name": name, "description": word.meaning} for name, word in ALGORITHMS.items()],
+        "queries": _queries(backends),
         "metrics": _metrics(),
     }
     if arguments.json:
@@ -38,6 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     _print("Experiments", [(row["name"], _experiment_line(row)) for row in listing["experiments"]])
     _print("Backends", [line for row in listing["backends"] for line in _backend_lines(row)])
     _print("Algorithms", [(row["name"], row["description"]) for row in listing["algorithms"]])
+    _print("Queries", [line for row in listing["queries"] for line in _query_lines(row)])
     _print("Metrics", [(row["name"], f"{row['unit']:4}  {row['description']}") for row in listing["metrics"]])
     return 0
 
@@ -88,6 +91,7 @@ def _backends() -> list[dict[str, Any]]:
         if said.missing is None:
             row |= {"shapes": list(said.tolerance), "tolerance": dict(said.tolerance), "units": said.units or None}
             row |= {"precision": said.precision or None, "approximations": dict(said.approximations)}
+            row |= {"queries": list(said.queries)}
         rows.append(row)
     return rows
 
@@ -101,6 +105,30 @@ def _backend_lines(row: dict[str, Any]) -> list[tuple[str, str]]:
     notes += [f"units: {row['units']}"] if row["units"] else []
     notes += row["approximations"].values()
     return [(row["name"], f"installed; {bands}"), *(("", note) for note in notes)]
+
+
+def _queries(backends: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Every query, with the algorithms of this program that answer it, and the installed backends that do by theirs."""
+
+    def own(name: str, query: Query) -> bool:
+        return not all(ALGORITHMS[algorithm].own for algorithm in algorithms_of(name, query))
+
+    return [
+        {
+            "name": query,
+            "description": meaning,
+            "algorithms": [name for name, word in ALGORITHMS.items() if word.own and query in word.queries],
+            "backends": [
+                row["name"] for row in backends if query in row.get("queries", ()) and own(row["name"], query)
+            ],
+        }
+        for query, meaning in QUERIES.items()
+    ]
+
+
+def _query_lines(row: dict[str, Any]) -> list[tuple[str, str]]:
+    answered = f"answered by {', '.join(row['algorithms'])}; by itself, of backends: {', '.join(row['backends'])}"
+    return [(row["name"], row["description"]), ("", answered)]
 
 
 def _metrics() -> list[dict[str, Any]]:

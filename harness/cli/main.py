@@ -15,6 +15,8 @@ COMMANDS = {
     "sweep": "run experiments and keep every measurement",
     "report": "turn the measurements into pages",
     "diff": "compare two sweeps: what got slower, what changed",
+    "history": "a measurement over all sweeps, and where it changed for good",
+    "merge": "bring results of several machines together",
     "compare": "compare backends with each other and with exact arithmetic",
     "trace": "print the hits of one run",
     "plan": "print what each run does, what it leaves out, and why",

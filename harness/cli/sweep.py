@@ -136,7 +136,7 @@ def _executor(arguments: argparse.Namespace) -> Executor | None:
 
 
 # s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
-_COMPARING = 45.0
+_COMPARING = 30.0
 
 
 def _compare(
@@ -152,34 +152,76 @@ def _compare(
     """
     import sys
 
-    crosschecked = [experiment for experiment in experiments if experiment.measure.compare]
+    surveys = [experiment for experiment in experiments if experiment.measure.families]
+    crosschecked = [
+        experiment for experiment in experiments if experiment.measure.compare and experiment not in surveys
+    ]
+    lines = _survey(surveys, meshes, database, command, arguments) if surveys else []
     if not crosschecked:
-        return []
-    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, kept, key_of, reductions
+        return lines
+    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, event_methods, kept, key_of, reductions
     from harness.compare.budget import Budget
+    from harness.compare.document import Known
+    from harness.compare.event_audit import FRAMES
 
     done = set() if arguments.fresh else database.history.compared()
-    lines = []
     for experiment in crosschecked:
         names, _ = backends_of(experiment)
+        events = event_methods(experiment)
         pairs = [(a, b) for place, a in enumerate(names) for b in names[place + 1 :]]
+        pairs += [(FRAMES, name) for name in events]
         keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs}
         wanted = {pair for pair, key in keys.items() if key not in done}
         if not wanted:
             continue
         asked = tuple(name for name in names if any(name in pair for pair in wanted))
+        left = tuple(name for name in events if (FRAMES, name) in wanted)
         if not arguments.quiet:
-            print(f"{experiment.name}: comparing {', '.join(asked)}", file=sys.stderr)
+            print(f"{experiment.name}: comparing {', '.join((*asked, *left))}", file=sys.stderr)
         budget = Budget(_COMPARING)
-        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget):
+        known: Known = {}
+        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=left):
             if pair not in wanted:
                 continue
             found.left_out += [line for line in budget.left_out if line not in found.left_out]
-            rows = reductions(found, meshes, SHOWN)
+            rows = reductions(found, meshes, SHOWN, known)
             database.add_comparison(command, experiment.name, pair, keys[pair], kept(experiment, found, rows))
             real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
             lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
         lines += [f"{experiment.name}: left out: {line}" for line in budget.left_out]
+    return lines
+
+
+def _survey(
+    experiments: Sequence[Experiment],
+    meshes: Mapping[Path, Mesh],
+    database: Database,
+    command: str,
+    arguments: argparse.Namespace,
+) -> list[str]:
+    """Ask the engines about families of poses, unless that was done; the outcome, a line an engine."""
+    import sys
+
+    from harness.cli.surveying import SWEPT_SECONDS, engines, survey_key, surveyed
+    from harness.compare.budget import Budget
+
+    done = set() if arguments.fresh else database.history.compared()
+    lines = []
+    for experiment in experiments:
+        wanted = [name for name in engines() if survey_key(experiment, meshes, name) not in done]
+        if not wanted:
+            continue
+        if not arguments.quiet:
+            print(f"{experiment.name}: asking {', '.join(wanted)}", file=sys.stderr)
+        seconds = SWEPT_SECONDS if experiment.measure.tier == "default" else None
+        found = surveyed(experiment, meshes, wanted, Budget(seconds))
+        for pair, document in found.documents():
+            key = survey_key(experiment, meshes, pair[0])
+            database.add_comparison(command, experiment.name, pair, key, document)
+            mine = [cell for cell in found.atlas.cells if cell.engine == pair[0]]
+            verdicts, beyond = sum(cell.verdicts for cell in mine), sum(cell.beyond for cell in mine)
+            lines.append(f"{experiment.name}: {pair[0]}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
+        lines += [f"{experiment.name}: left out: {line}" for line in found.found.left_out]
     return lines
 
 

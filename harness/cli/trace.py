@@ -45,8 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(traced.to_csv())
         return 0
     for time, (i, j), wall in zip(traced.times.tolist(), traced.bodies.tolist(), traced.walls.tolist(), strict=True):
-        what = f"bodies {i} and {j}" if wall < 0 else f"body {i} and wall {WALLS[wall]}"
+        near = " are near" if traced.near else ""
+        what = f"bodies {i} and {j}{near}" if wall < 0 else f"body {i} and wall {WALLS[wall]}"
         print(f"{time:.9g} s  {what}")
     counters = "  ".join(f"{name} {value}" for name, value in traced.counters.items())
-    print(f"{len(traced.times)} hits in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
+    events = "events" if traced.near else "hits"
+    print(f"{len(traced.times)} {events} in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
     return 0

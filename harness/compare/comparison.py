@@ -71,16 +71,45 @@ def compare_all(
     return whole
 
 
+class Asked:
+    """Two backends, loaded once with a scene and asked at any poses of it. A context: leaving it ends their processes.
+
+    Parameters
+    ----------
+    scene : whose sizes and mesh the backends are loaded with
+    names : of both
+    """
+
+    def __init__(self, scene: Scene, names: NamePair) -> None:
+        self._scene, self._names = scene, names
+        self._processes = ExitStack()
+
+    def __enter__(self) -> Asked:
+        with ExitStack() as processes:
+            self._loaded = load(self._scene, self._names, processes, ANSWER_SECONDS)
+            self._processes = processes.pop_all()
+        return self
+
+    def __exit__(self, *ending: object) -> None:
+        self._processes.close()
+
+    def disagreements(self, pose: Pose) -> list[Case]:
+        """The real disagreements at a pose, and the errors that both share, each asked once."""
+        pose_set = PoseSet(self._scene, lambda held: (pose,), hard=True)
+        found = Comparison()
+        for group in self._loaded.groups:
+            for one in _Questions(pose_set, group, Budget(), again=False).ask().values():
+                found.add(one)
+        return found.cases + found.shared
+
+
 def disagreements(scene: Scene, pose: Pose, names: NamePair) -> list[Case]:
     """The real disagreements of two backends at one pose, and the errors that they share, each asked once, afresh."""
-    pose_set = PoseSet(scene, lambda held: (pose,), hard=True)
-    found = _compare_at(pose_set, names, ANSWER_SECONDS, Budget(), again=False)[names]
-    return found.cases + found.shared
+    with Asked(scene, names) as asked:
+        return asked.disagreements(pose)
 
 
-def _compare_at(
-    pose_set: PoseSet, names: Sequence[str], timeout: float, budget: Budget, *, again: bool = True
-) -> Found:
+def _compare_at(pose_set: PoseSet, names: Sequence[str], timeout: float, budget: Budget) -> Found:
     shape = pose_set.scene.shape
     whole: Found = {pair: Comparison([Tally(pair, shape)]) for pair in combinations(names, 2)}
     with ExitStack() as processes:
@@ -94,7 +123,7 @@ def _compare_at(
             pair = next(pair for pair in whole if name in pair)
             whole[pair].failures.append(Failure(pair, name, "loading", 0, claim, kind="claim"))
         for group in loaded.groups:
-            for pair, found in _Questions(pose_set, group, budget, again=again).ask().items():
+            for pair, found in _Questions(pose_set, group, budget, again=True).ask().items():
                 whole[pair].add(found)
     return whole
 

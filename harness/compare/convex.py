@@ -1,8 +1,9 @@
 """Two convex sets of exact points: do they share a point, and if not, what plane parts them.
 
 The algorithm of Gilbert, Johnson and Keerthi for the point nearest to the origin in the difference of two hulls, in
-integers. Without rounding it always ends, since every step comes strictly nearer and there are finitely many simplices,
-and what it returns is a proof: weights of vertices of both sets that make the same point, or the normal of a plane.
+integers, from where a walk of floats has ended. Without rounding it always ends, since every step comes strictly nearer
+and there are finitely many simplices, and what it returns is a proof: weights of vertices of both sets that make the
+same point, or the normal of a plane.
 Two triangles are such sets as well, degenerate ones included.
 """
 
@@ -11,9 +12,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, combinations
-from typing import Any
 
-from harness.compare.exact import Point, Points, determinant, dot, minus
+import numpy as np
+
+from harness.compare.exact import Point, Points, determinant, dot, in_floats, minus
+from harness.compare.proposal import probable_corners, probable_simplex
 
 
 @dataclass(frozen=True)
@@ -92,7 +95,7 @@ def meet(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Plane
 def connect(first: Sequence[Point], second: Sequence[Point]) -> CommonPoint | Connection:
     """A common point of the hulls of two sets, or their shortest connection; parameters as for `meet`."""
     first, second = Points.of(first), Points.of(second)
-    simplex = [(0, 0)]
+    simplex = [(a, b) for a, b in probable_simplex(first.rough, second.rough).tolist()]
     while True:
         corners = [minus(first[a], second[b]) for a, b in simplex]
         kept, weights, total = _nearest_to_origin(corners)
@@ -137,19 +140,9 @@ def _proposed(corners: Sequence[Point]) -> tuple[int, ...]:
     """Which corners it probably is, by floats: they are tried first, and what floats get wrong costs time only."""
     if len(corners) == 1:
         return (0,)
-    largest = max(abs(part) for corner in corners for part in corner)
-    excess = max(0, largest.bit_length() - 60)
-    # the arithmetic is the same; with floats it is that of numbers near 1
-    near: Any = [tuple(float(part >> excess) * 2.0**-60 for part in corner) for corner in corners]
-    best: tuple[int, ...] = (0,)
-    least = float("inf")
-    for kept, weights, total in _inner_points(near):
-        nearest = _mixed(tuple(zip(kept, weights, strict=True)), near)
-        squared = dot(nearest, nearest)
-        # the nearest of all inner points: that of the whole hull, for the hull holds every one of them
-        if (distance := squared / total**2) < least:
-            best, least = kept, distance
-    return best
+    near = in_floats(corners)
+    found = probable_corners(near / (np.abs(near).max() or 1.0), np.empty(3))
+    return tuple(place for place in range(len(corners)) if found & (1 << place))
 
 
 def _weights(corners: Sequence[Point]) -> list[int]:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from harness.compare.cross_section import cross_section
 from harness.compare.minimise import minimise
 from harness.compare.outcome import Case, Comparison, Failure
 from harness.compare.reproduction import text_of
 from harness.compare.tally import Approximation, Counts, GapHistogram
+from harness.vocabulary import MethodName
+
+Known: TypeAlias = dict[tuple[str, str, tuple[int, int], bytes], Case]
+"""The smaller cases, by who is wrong about which bodies at which pose."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +43,7 @@ class Reduced:
         return "-".join(self.case.backends).replace("/", "-")
 
 
-def reduced(found: Comparison, mesh_name: dict[int, str], most: int) -> list[Reduced]:
+def reduced(found: Comparison, mesh_name: dict[int, str], most: int, known: Known | None = None) -> list[Reduced]:
     """Every wrong verdict, those that both backends share last; the first few of every backend made smaller.
 
     Parameters
@@ -47,13 +51,22 @@ def reduced(found: Comparison, mesh_name: dict[int, str], most: int) -> list[Red
     found : Comparison
     mesh_name : the file of a mesh, by id(mesh)
     most : cases of one backend to make smaller: more of them show the same defect again
+    known : what was made of them beside other backends, which is added to
     """
+    known = {} if known is None else known
     tried: dict[str, int] = {}
     rows = []
     for case in found.cases + found.shared:
         tried[case.wrong] = tried.get(case.wrong, 0) + 1
-        now = tried[case.wrong] <= most
-        rows.append(Reduced(case, minimise(case) if now else None, mesh_name.get(id(case.scene.mesh)), now))
+        # what computes events has no verdict on bodies at rest, so that nothing smaller would show it
+        now = tried[case.wrong] <= most and MethodName.read(case.wrong, case.scene.shape).stepped
+        small = None
+        if now:
+            place = (case.wrong, case.scene.shape, case.bodies, case.pose.positions.tobytes())
+            small = minimise(case, known.get(place))
+            if small is not None:
+                known.setdefault(place, small)
+        rows.append(Reduced(case, small, mesh_name.get(id(case.scene.mesh)), now))
     return rows
 
 
@@ -89,6 +102,7 @@ def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
     return {
         "backends": list(case.backends),
         "wrong": case.wrong,
+        "shape": case.scene.shape,
         "bodies": list(case.bodies),
         "gap": case.judgement.gap,
         "certificate": case.judgement.certificate | where,
@@ -122,7 +136,6 @@ def shown_case(row: Reduced) -> dict[str, Any]:
         "certificate": best.judgement.certificate | {"touching": best.judgement.touching},
     }  # fmt: skip
     return case_row(row, None) | {
-        "shape": best.scene.shape,
         "sizes": [float(sizes[i]), float(sizes[j])],
         "section": cross_section(best),
         "minimised": small,

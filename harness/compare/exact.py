@@ -37,7 +37,7 @@ class Points(Sequence[Point]):
     """
 
     def __init__(self, exact: Callable[[int], Point], rough: Floats) -> None:
-        self.rough = rough
+        self.rough = np.ascontiguousarray(rough)
         self._exact = exact
         self._known: dict[int, Point] = {}
         self._slack = 2 * _ROUGH * float(np.abs(rough).max(initial=0.0))
@@ -152,9 +152,17 @@ def determinant(a: Point, b: Point, c: Point) -> int:
 
 def _rough(placed: Placed) -> Floats:
     """The points turned, in floats."""
-    w, vector = placed.quaternion[0], placed.quaternion[1:]
-    across = 2.0 * np.cross(vector, placed.points) / float(placed.quaternion @ placed.quaternion)
-    return np.asarray(placed.points + w * across + np.cross(vector, across), np.float64)
+    w, x, y, z = placed.quaternion.tolist()
+    norm = w * w + x * x + y * y + z * z
+    rows = np.array(
+        [
+            [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+        ]
+    )
+    # not by BLAS, whose threads wait longer than this takes
+    return np.asarray(np.einsum("ij,kj->ik", placed.points, rows / norm), np.float64)
 
 
 def _integers(points: Floats) -> tuple[Callable[[int], Point], Fraction]:

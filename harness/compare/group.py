@@ -119,5 +119,6 @@ def _outside(points: Floats, vertices: Floats, faces: np.ndarray[tuple[int, ...]
     # the normal of a sliver is mostly rounding
     proper = areas > 1e-9 * float(areas.max())
     normals = normals[proper] / areas[proper, None]
-    heights = points @ normals.T - np.einsum("ij,ij->i", normals, a[proper])
+    # not by BLAS, whose threads wait longer than this takes
+    heights = np.einsum("ij,kj->ik", points, normals) - np.einsum("ij,ij->i", normals, a[proper])
     return float(heights.max())

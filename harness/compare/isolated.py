@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
+from time import process_time
 from types import TracebackType
 from typing import Any
 
-from harness.arrays import Pairs
+from harness.arrays import Floats, Pairs
 from harness.backends import registry
 from harness.backends.contract import ContractError, read_only, require_pairs
 from harness.backends.protocol import (
@@ -105,6 +106,18 @@ class Isolated:
         ending, self._child = self._child.end(), None
         return f"no answer within {self._timeout:g} s" if answer == "timeout" else ending.instead_of("an answer")
 
+    def seconds_a_query(self, poses: Sequence[Pose]) -> float | None:
+        """CPU time of a query when these poses, all of them answered before, are asked one right after another, s."""
+        if self._child is None or not poses:
+            return None
+        asked = _Timed(tuple((pose.positions, pose.quaternions) for pose in poses))
+        answer = self._child.ask(pickle.dumps(asked), self._timeout * len(poses))
+        if isinstance(answer, bytes):
+            seconds: float | None = pickle.loads(answer)
+            return seconds
+        self._end()
+        return None
+
     def _start(self) -> Facts:
         self._child = Child.fork(partial(_serve, self._name, self._scene))
         try:
@@ -158,20 +171,37 @@ def _serve(name: str, scene: Scene, channel: Channel) -> None:
         channel.send(pickle.dumps(str(error) if isinstance(error, InputError) else _told(error)))
         return
     channel.send(pickle.dumps(facts))
+    # what is our own needs no read-only view, for which its kernels would be compiled anew
+    guarded = (lambda poses: poses) if isinstance(backend, AtPoses) else read_only
     while (asked := channel.receive()) is not None:
-        positions, quaternions = pickle.loads(asked)
+        question = pickle.loads(asked)
         answer: Any
         try:
-            # what is our own needs no such view, for which its kernels would be compiled anew
-            if not isinstance(backend, AtPoses):
-                positions, quaternions = read_only(positions), read_only(quaternions)
-            answer = backend.pairs(positions, quaternions)
-            answer = require_pairs(name, answer, len(positions))
+            if isinstance(question, _Timed):
+                answer = question.seconds(backend)
+            else:
+                positions, quaternions = question
+                answer = backend.pairs(guarded(positions), guarded(quaternions))
+                answer = require_pairs(name, answer, len(positions))
         except ContractError as error:
             answer = str(error)
         except Exception as error:
-            answer = _told(error)
+            answer = None if isinstance(question, _Timed) else _told(error)
         channel.send(pickle.dumps(answer))
+
+
+@dataclass(frozen=True, eq=False)
+class _Timed:
+    """Poses to be asked about without a pause: positions and quaternions of each."""
+
+    poses: tuple[tuple[Floats, Floats], ...]
+
+    def seconds(self, backend: Backend) -> float:
+        """CPU time of a query."""
+        started = process_time()
+        for positions, quaternions in self.poses:
+            backend.pairs(positions, quaternions)
+        return (process_time() - started) / len(self.poses)
 
 
 def _told(error: Exception) -> str:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from harness.arrays import Floats
-from harness.compare.comparison import disagreements
+from harness.compare.comparison import Asked, disagreements
 from harness.compare.isolated import UnusableError
 from harness.compare.outcome import Case
 from harness.compare.poses import Pose
@@ -18,21 +21,35 @@ from harness.scene.scene import Scene
 _DIGITS = (0, 1, 2, 3, 4, 6, 9, 12)
 
 
-def minimise(case: Case) -> Case | None:
+def minimise(case: Case, known: Case | None = None) -> Case | None:
     """The same backend wrong in a scene of its own, with its bodies at rest at their poses.
 
     Bodies are taken away, first by halves, then one by one, as long as the backend is still wrong about any that are
     left; then coordinates, orientations and sizes are rounded as far as that goes.
+
+    Parameters
+    ----------
+    case : Case
+    known : what was made of the same wrong verdict beside another backend; taken where it shows this one as well
 
     Returns
     -------
     Case or None
         None if the scene does not show it when asked once: it then depends on what was asked before.
     """
+    if known is not None and (same := _wrong_again(case, replace(known.scene, hulls={}))) is not None:
+        return same
     small = _wrong_again(case, _at_rest(case.scene, case.pose, list(case.bodies)))
     if small is None:
         small = _with_fewer_bodies(case)
-    return None if small is None else _Rounding(case, small).result()
+    return None if small is None else _rounded(case, small)
+
+
+def _rounded(case: Case, small: Case) -> Case:
+    """The roundest case: with backends that stay loaded, and where that is not found again afresh, without."""
+    with _Again(case) as asked:
+        found = _Rounding(small, asked.find).result()
+    return _wrong_again(case, replace(found.scene, hulls={})) or _Rounding(small, partial(_wrong_again, case)).result()
 
 
 def _with_fewer_bodies(case: Case) -> Case | None:
@@ -55,11 +72,49 @@ def _with_fewer_bodies(case: Case) -> Case | None:
     return small
 
 
-class _Rounding:
-    """Rounds the numbers of a case as long as the backend stays wrong."""
+class _Again:
+    """Asks about scenes that differ in poses alone without loading the backends anew. A context.
 
-    def __init__(self, case: Case, small: Case) -> None:
-        self._case, self._small = case, small
+    Parameters
+    ----------
+    case : what is to be found again
+    """
+
+    def __init__(self, case: Case) -> None:
+        self._case = case
+        self._loaded, self._sizes = ExitStack(), np.empty(0)
+
+    def __enter__(self) -> _Again:
+        return self
+
+    def __exit__(self, *ending: object) -> None:
+        self._loaded.close()
+
+    def find(self, scene: Scene) -> Case | None:
+        """The first verdict in this scene that is wrong in the same way, if there is one."""
+        bodies = scene.bodies
+        try:
+            if not np.array_equal(self._sizes, bodies.sizes):
+                self._loaded.close()
+                self._asked = self._loaded.enter_context(Asked(scene, self._case.backends))
+                self._sizes = bodies.sizes.copy()
+            found = _same(self._case, self._asked.disagreements(Pose("at rest", bodies.positions, bodies.quaternions)))
+        except UnusableError:
+            return None
+        return None if found is None else replace(found, scene=replace(found.scene, bodies=bodies))
+
+
+class _Rounding:
+    """Rounds the numbers of a case as long as the backend stays wrong.
+
+    Parameters
+    ----------
+    small : Case
+    again : the same wrong verdict in another scene, if it is there
+    """
+
+    def __init__(self, small: Case, again: Callable[[Scene], Case | None]) -> None:
+        self._small, self._again = small, again
 
     def result(self) -> Case:
         """The roundest case found."""
@@ -106,7 +161,7 @@ class _Rounding:
             return False
         lengths = np.linalg.norm(bodies.quaternions, axis=1, keepdims=True)
         bodies = replace(bodies, quaternions=bodies.quaternions / lengths, masses=bodies.sizes**3)
-        found = _wrong_again(self._case, replace(scene, bodies=bodies, hulls={}))
+        found = self._again(replace(scene, bodies=bodies, hulls={}))
         if found is not None:
             self._small = found
         return found is not None
@@ -119,6 +174,10 @@ def _wrong_again(case: Case, scene: Scene) -> Case | None:
         found = disagreements(scene, pose, case.backends)
     except UnusableError:
         return None
+    return _same(case, found)
+
+
+def _same(case: Case, found: Sequence[Case]) -> Case | None:
     return next((one for one in found if one.wrong == case.wrong), None)
 
 

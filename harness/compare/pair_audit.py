@@ -160,10 +160,15 @@ def _as_set(pairs: Pairs) -> set[Pair]:
     return {(i, j) for i, j in pairs.tolist()}
 
 
-def _band(scene: Scene, wrong: Facts, other: Facts, pose: Pose, bodies: tuple[int, int]) -> float:
+def _band(scene: Scene, wrong: Facts, other: Facts, pose: Pose, bodies: Pair) -> float:
     """m; on a nearer contact the backend that is wrong need not be right. What the other declares excuses nothing."""
     trusted = bool(wrong.hulls) != bool(other.hulls)
-    tolerance = min(wrong.hulls_tolerance if trusted and wrong.hulls else wrong.tolerance, LARGEST_TOLERANCE)
+    return band(scene, wrong.hulls_tolerance if trusted and wrong.hulls else wrong.tolerance, pose, bodies)
+
+
+def band(scene: Scene, tolerance: float, pose: Pose, bodies: Pair) -> float:
+    """m; on a contact nearer than that a backend of this tolerance (of size) need not be right."""
     chosen = list(bodies)
     largest = float(scene.bodies.sizes[chosen].max())
-    return tolerance * largest + _ROUNDING * (float(np.abs(pose.positions[chosen]).max()) + largest)
+    farthest = float(np.abs(pose.positions[chosen]).max())
+    return min(tolerance, LARGEST_TOLERANCE) * largest + _ROUNDING * (farthest + largest)

@@ -11,7 +11,7 @@ from harness.vocabulary import MethodName
 from harness.whole_file import write_whole
 
 
-def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
+def save(case: Case, folder: Path, name: str, mesh: Path | None, script: str | None = None) -> Path:
     """Write a case whose bodies are at rest at their poses.
 
     Parameters
@@ -20,6 +20,7 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
     folder : made if it is not there
     name : of the file, without suffix
     mesh : the file of its mesh, which is copied beside the experiment
+    script : a Python file that shows the same without this program, written beside it
 
     Returns
     -------
@@ -30,6 +31,8 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None) -> Path:
     if mesh is not None and not (folder / mesh.name).exists():
         shutil.copyfile(mesh, folder / mesh.name)
     path = folder / f"{name}.yaml"
+    if script is not None:
+        write_whole(path.with_suffix(".py"), script)
     write_whole(path, text_of(case, mesh.name if mesh else None))
     return path
 

@@ -1,4 +1,4 @@
-"""Whether a method's verdict depends on the pose alone: every pose is asked again, in another order.
+"""Whether a method's verdict depends on the pose alone: every pose is asked again, in another order, and one afresh.
 
 Where the answer is another one, the pose is asked twice in a row and put to a new process as its first question: a
 method whose answers differ even then is random, else its verdict depends on what was asked before.
@@ -71,7 +71,27 @@ def unsteady(
         if differing is not None:
             random = _is_random(asked, name, scene, poses[place])
             found.append(Unsteady(poses[place].name, place + 1, differing, random))
+    if not found and answers and not budget.spent:
+        found += _changed_afresh(asked, name, scene, poses, answers)
     return sorted(found, key=lambda one: one.query_index)
+
+
+def _changed_afresh(
+    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Pairs]
+) -> list[Unsteady]:
+    """The pose that was asked last, with the most before it, is the first question of a new process."""
+    place = max(answers)
+    try:
+        with Isolated(name, scene) as fresh:
+            answer = fresh.pairs(poses[place])
+    except UnusableError:
+        return []
+    if isinstance(answer, str):
+        return []
+    differing = _difference(asked.facts.tolerance, scene, poses[place], answers[place], answer)
+    if differing is None:
+        return []
+    return [Unsteady(poses[place].name, place + 1, differing, _is_random(asked, name, scene, poses[place]))]
 
 
 _TRIES = 8

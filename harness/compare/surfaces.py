@@ -44,27 +44,31 @@ def judge_surfaces(
     distances, _ = cKDTree(one).query(other)
     nearest_vertices = float(distances.min())
     triangles, other_triangles = one[first.faces], other[second.faces]
-    pairs = _close_boxes(triangles, other_triangles, nearest_vertices + slack)
-    bounds = np.concatenate(
-        [
-            _separation(triangles[some[:, 0]], other_triangles[some[:, 1]])
-            for some in np.array_split(pairs, len(pairs) // _PAIRS_AT_ONCE + 1)
-        ]
-    )
-    order = np.argsort(bounds, kind="stable")
-    gap, proof = np.inf, Certificate()
-    for place in order.tolist():
-        if bounds[place] - slack > gap:
-            break
-        f, g = pairs[place].tolist()
-        found, apart = _decide(
+
+    def decide(f: int, g: int) -> tuple[Certificate, float | None]:
+        return _decide(
             Placed(first.vertices[first.faces[f]], position, quaternion),
             Placed(second.vertices[second.faces[g]], other_position, other_quaternion),
         )
+
+    # what touches is found among the boxes that overlap; how far surfaces are apart needs more of them
+    pairs, bounds = _bounded(triangles, other_triangles, slack)
+    depth = max(0.0, -float(bounds.min(initial=0.0)))
+    for place in np.argsort(bounds, kind="stable").tolist():
+        if bounds[place] > slack:
+            break
+        f, g = pairs[place].tolist()
+        found, apart = decide(f, g)
         if apart is None:
-            depth = max(0.0, -float(bounds[order[0]]))
             return Judgement(True, -depth, found | {"faces": [f, g]})
-        if apart < gap:
+    pairs, bounds = _bounded(triangles, other_triangles, nearest_vertices + slack)
+    gap, proof = np.inf, Certificate()
+    for place in np.argsort(bounds, kind="stable").tolist():
+        if bounds[place] - slack > gap:
+            break
+        f, g = pairs[place].tolist()
+        found, apart = decide(f, g)
+        if apart is not None and apart < gap:
             gap, proof = apart, found | {"nearest faces": [f, g]}
     inside = _inside(one[0], other_triangles) or _inside(other[0], triangles)
     return Judgement(False, gap, proof, contained=inside)
@@ -79,6 +83,13 @@ def _decide(first: Placed, second: Placed) -> tuple[Certificate, float | None]:
     if isinstance(found, CommonPoint):
         return certificate.of_common_point(found, one, first.position.tolist(), unit), None
     return certificate.of_plane(found, one, other), distance_along(found, one, other, unit)
+
+
+def _bounded(triangles: Floats, others: Floats, reach: float) -> tuple[Ints, Floats]:
+    """Pairs of triangles whose boxes are within reach, and how far each pair is apart at the least."""
+    pairs = _close_boxes(triangles, others, reach)
+    parts = np.array_split(pairs, len(pairs) // _PAIRS_AT_ONCE + 1)
+    return pairs, np.concatenate([_separation(triangles[some[:, 0]], others[some[:, 1]]) for some in parts])
 
 
 def _close_boxes(triangles: Floats, others: Floats, reach: float) -> Ints:

@@ -16,15 +16,17 @@ from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, QUERIES, Query, algorit
 Values = Mapping[str, Any]
 
 # The shapes of a backend that lacks one; what a backend from elsewhere holds is known when it is asked.
-SHAPES = {"trimesh": ("hull", "mesh")}
+SHAPES = {"trimesh": ("hull", "mesh"), "cgal": ("mesh",), "drake": ("sphere", "hull"), "ipctk": ("mesh",)}
+
+# Those whose gaps it tells, where it does not of all.
+SHAPES_WITH_GAPS = {"rapier3d": ("sphere", "hull")}
 
 # What a backend's own pipeline can be asked; what one from elsewhere can is known when it is asked.
 NATIVE_QUERIES: dict[str, tuple[Query, ...]] = {
-    "coal": ("collision",),
-    "fcl": ("collision",),
-    "mujoco": ("collision",),
-    "pybullet": ("collision",),
-    "trimesh": ("collision",),
+    **dict.fromkeys(("coal", "drake", "mujoco", "pybullet", "trimesh"), ("collision", "tolerance", "distance")),
+    "cgal": ("collision",),
+    "ipctk": ("collision", "impact"),
+    "parry3d": ("collision", "tolerance"),
 }
 
 
@@ -118,6 +120,15 @@ def backend_has_the_shape(values: Values) -> Conflict | None:
     return None
 
 
+def backend_has_gaps_of_the_shape(values: Values) -> Conflict | None:
+    """What a library tells of some shapes it may not tell of all."""
+    backend, query, shapes = values["backend"], values["query"], SHAPES_WITH_GAPS.get(values["backend"])
+    if query in NEAR_QUERIES and shapes is not None and values["shape"] not in shapes:
+        message = f"backend {backend} has no gaps of shape {{}}, only of {listed(shapes)}"
+        return Conflict(message, ("backend", "query", "shape"), excludable=True)
+    return None
+
+
 def within_is_asked_for(values: Values) -> Conflict | None:
     """Only the queries about pairs that are near need to know how near."""
     query, within = values["query"], values["within"]
@@ -168,4 +179,11 @@ ENGINE: tuple[Rule, ...] = (
     algorithm_answers_the_query,
     backend_answers_the_query,
 )
-POINT: tuple[Rule, ...] = (*SCENE, *MOTION, *ENGINE, backend_has_the_shape, bodies_pass_through)
+POINT: tuple[Rule, ...] = (
+    *SCENE,
+    *MOTION,
+    *ENGINE,
+    backend_has_the_shape,
+    backend_has_gaps_of_the_shape,
+    bodies_pass_through,
+)

@@ -34,8 +34,16 @@ class Published(Declared):
     )
 
 
+class MapSpec(Declared):
+    """Two leaves over which a map shows the fastest method."""
+
+    x: LeafName = Field(description="leaf or derived parameter from left to right")
+    y: LeafName = Field(description="leaf or derived parameter from bottom to top")
+
+
 class ReportSpec(Declared):
     """The axes of the figure."""
 
     x: LeafName | None = Field(None, description="leaf or derived parameter along the figure")
     y: Annotated[tuple[Text, ...], BeforeValidator(_as_list)] = Field((), description="metrics up the figure")
+    map: MapSpec | None = Field(None, description="map of the fastest method over two leaves, by the first metric of y")

@@ -13,6 +13,7 @@ from harness.vocabulary import (
     DEFAULT_ALGORITHM,
     REFERENCE_ALGORITHM,
     Algorithm,
+    Family,
     Query,
     ReferenceAlgorithm,
     Response,
@@ -152,4 +153,10 @@ class MeasureSpec(Declared):
     tier: Literal["default", "long"] = Field("default", description="long: only with `harness sweep --long`")
     max_runs: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(10_000, description="more runs than this are refused")
     compare: Switch = Field(False, description="hold the backends of the points against each other, after the runs")
+    families: tuple[Family, ...] = Field(
+        (), description="families of two-body poses that every installed backend is judged on; see `harness compare`"
+    )
+    family_poses: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(
+        100, description="poses of each family, shape and mesh"
+    )
     reference: ReferenceSpec | None = Field(None, description="measure errors against such a run")

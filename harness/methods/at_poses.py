@@ -39,6 +39,8 @@ class AtPoses:
         return self._backend.tolerance(shape)
 
     def load(self, scene: Scene) -> None:
+        # how far the library is to be trusted may depend on the scene
+        self._backend.load(scene)
         self._detector: Detector = self._method.detector(scene, self._method.detection(scene))
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from harness.backends import registry
 from harness.methods.culled import DETECTION, FCL_DECIDES
+from harness.methods.query_stages import decide_exact_stages
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
@@ -30,6 +31,12 @@ class BruteForce(SteppedMethod):
                 decisions.take("fcl", True, every, fixed=FCL_DECIDES)
             else:
                 decisions.take(stage, False, "brute force puts every pair to FCL", fixed=_FIXED)
+
+    def decide_cull(self, scene: Scene, near: str, decisions: Decisions) -> None:
+        why = f"brute force puts all pairs to the kernels, whether their bounding spheres {near} or not"
+        decisions.take("sphere_cull", False, why, fixed=_FIXED)
+        decisions.take("size_classes", False, "nothing is culled", fixed=_FIXED)
+        decide_exact_stages(self.name.query, scene, decisions)
 
     def no_detection(self, why: str, decisions: Decisions, *, fixed: str) -> None:
         for stage in DETECTION:

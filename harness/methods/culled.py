@@ -17,6 +17,7 @@ from harness.arrays import Floats, Pairs
 from harness.broadphase.pairs import BroadPhase
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
+from harness.methods.query_stages import decide_exact_stages
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
@@ -63,6 +64,16 @@ class Culled(SteppedMethod):
             self.decide_spheres(decisions)
         else:
             self._decide_solids(scene, decisions)
+
+    def decide_cull(self, scene: Scene, near: str, decisions: Decisions) -> None:
+        alone = f"without its cull, {self.name.algorithm} would be brute-force; choose that"
+        why = f"only pairs whose bounding spheres {near} go on, found by {self.found_by}"
+        decisions.take("sphere_cull", True, why, fixed=alone)
+        self.decide_size_classes(scene, decisions)
+        decide_exact_stages(self.name.query, scene, decisions)
+
+    def close_pairs_of(self, scene: Scene, plan: Plan, radii: Floats) -> BroadPhase:
+        return self.scheme.make(radii, scene.box, plan.keeps("size_classes"))
 
     @property
     def found_by(self) -> str:
@@ -122,6 +133,8 @@ class Culled(SteppedMethod):
 
     def warm_ups(self) -> Iterator[WarmUp]:
         yield from super().warm_ups()
+        if self.name.query != "collision":
+            return
         algorithm = self.name.algorithm
         yield f"close pairs of {algorithm}", partial(_find_close_pairs, self)
         if self.name.shape != "sphere":

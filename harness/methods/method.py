@@ -14,7 +14,7 @@ from harness.methods.stages import Plan
 from harness.motion.hits import Outcome
 from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
-from harness.vocabulary import MethodName, Query, Shape
+from harness.vocabulary import MethodName, Shape
 
 WarmUp = tuple[str, Callable[[], None]]
 """Kernels that belong together, by a name that stands for them once a process, and what compiles them."""
@@ -40,16 +40,25 @@ class Method(ABC):
     Parameters
     ----------
     name : MethodName
-    tolerance : of size; when two surfaces count as touching, for methods that have such a knob
+    tolerance : of size; when two surfaces count as touching, and how well gaps are known, for methods that have such a
+        knob
+    within : m, the gap up to which pairs are asked about, for the queries that have one
     forced : stages forced on (True) or off (False) for an ablation
     """
 
     shapes: ClassVar[tuple[Shape, ...]] = ("sphere", "hull", "mesh")
-    queries: ClassVar[tuple[Query, ...]] = ("collision",)
 
-    def __init__(self, name: MethodName, *, tolerance: float = 1e-6, forced: Mapping[str, bool] | None = None) -> None:
+    def __init__(
+        self,
+        name: MethodName,
+        *,
+        tolerance: float = 1e-6,
+        within: float | None = None,
+        forced: Mapping[str, bool] | None = None,
+    ) -> None:
         self.name = name
         self.tolerance = tolerance
+        self.within = within
         self.forced = dict(forced or {})
 
     @abstractmethod

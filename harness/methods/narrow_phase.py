@@ -76,7 +76,7 @@ class HullNarrowPhase:
         assert scene.mesh is not None, "hulls come from a mesh"
         self._fcl = FclPairTest(scene)
         self._places = Places(scene.bodies.sizes)
-        self._hulls = HullPairs(_hull_of_size_1(scene), MARGIN)
+        self._hulls = HullPairs(hull_of_size_1(scene), MARGIN)
         self._tests = 0
 
     @property
@@ -161,7 +161,7 @@ class MeshNarrowPhase:
         return touching
 
 
-def _hull_of_size_1(scene: Scene) -> Hull:
+def hull_of_size_1(scene: Scene) -> Hull:
     """The hull that the bodies have in their sizes.
 
     Raises

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from harness.arrays import Flags, Ints, Pairs
+from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.measure.conservation import Conservation
 from harness.methods.penetration import Penetration
 from harness.motion.digest import EventDigest
@@ -44,7 +44,7 @@ class Observer:
         """Bodies whose centre was outside the box in some frame."""
         return int(np.count_nonzero(self._outside))
 
-    def frame(self, time: float, pairs: Pairs, hits: Flags, walls: Ints | Flags) -> None:
+    def frame(self, time: float, pairs: Pairs, hits: Flags, walls: Ints | Flags, times: Floats | None = None) -> None:
         """Observe one frame.
 
         Parameters
@@ -53,6 +53,7 @@ class Observer:
         pairs : (k, 2) int array, touching
         hits : (k,) bool array, which of them count as hits
         walls : (n, 6) int or bool array, how often which body hit which wall
+        times : (k,) s, when the pairs were hit, ascending; without, all at the frame
         """
         if len(pairs):
             answered = pairs[hits]
@@ -64,7 +65,11 @@ class Observer:
                 deepest = self._penetration.deepest(pairs, self._trajectory.positions, self._trajectory.quaternions)
                 self.max_penetration = max(self.max_penetration, deepest)
             if self.log is not None:
-                self.log.add_pairs(time, answered)
+                if times is None:
+                    self.log.add_pairs(time, answered)
+                else:
+                    for hit, pair in zip(times[hits].tolist(), answered, strict=True):
+                        self.log.add_pairs(hit, pair[None])
         wall_hits = int(walls.sum())
         if wall_hits:
             self.wall_hits += wall_hits

@@ -10,17 +10,23 @@ from harness.methods.method import Method
 from harness.vocabulary import MethodName
 
 
-def method_of(name: MethodName, *, tolerance: float = 1e-6, forced: Mapping[str, bool] | None = None) -> Method:
+def method_of(
+    name: MethodName,
+    *,
+    tolerance: float = 1e-6,
+    within: float | None = None,
+    forced: Mapping[str, bool] | None = None,
+) -> Method:
     """The method of a name, set as a run has it.
 
     Parameters
     ----------
     name : MethodName
         Of an algorithm in `harness.vocabulary.ALGORITHMS`.
-    tolerance, forced : see `Method`
+    tolerance, within, forced : see `Method`
     """
     module = f"harness.methods.{name.algorithm.replace('-', '_')}"
     if find_spec(module) is None:
         module = "harness.methods.culled"
     made: type[Method] = import_module(module).METHOD
-    return made(name, tolerance=tolerance, forced=forced)
+    return made(name, tolerance=tolerance, within=within, forced=forced)

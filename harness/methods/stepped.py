@@ -12,14 +12,19 @@ from functools import partial
 from typing import ClassVar
 
 from harness.arrays import Floats, Pairs
+from harness.broadphase.all_pairs import AllPairs
+from harness.broadphase.pairs import BroadPhase
+from harness.methods.asking import ImpactAsking, NearAsking
+from harness.methods.impact_times import ImpactFinder, KernelImpacts
 from harness.methods.method import Method, Pipeline, WarmUp
+from harness.methods.near_pairs import KernelNearPairs, NearFinder, near_radii
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepping import Detector, Stepping
 from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
 from harness.motion.law import MotionLaw
 from harness.motion.reach import all_at_rest, no_pair_can_meet, walls_are_out_of_reach
 from harness.scene.scene import Scene
-from harness.vocabulary import Shape
+from harness.vocabulary import NEAR_QUERIES, QUERIES, Shape
 
 
 class SteppedMethod(Method):
@@ -48,6 +53,32 @@ class SteppedMethod(Method):
             If the library that it stands on is missing, or cannot hold the scene.
         """
 
+    def decide_cull(self, scene: Scene, near: str, decisions: Decisions) -> None:
+        """Decide on the stages that find the pairs for which `near` holds, such as "whose spheres touch".
+
+        Of queries other than collision; without any, nothing of them is known.
+        """
+
+    def close_pairs_of(self, scene: Scene, plan: Plan, radii: Floats) -> BroadPhase:
+        """A broad phase for spheres of these radii (n,) m around the bodies of a scene; for the same queries."""
+        return AllPairs(len(scene.bodies))
+
+    def near_finder(self, scene: Scene, plan: Plan) -> NearFinder:
+        """What finds near pairs, loaded with the scene.
+
+        Raises
+        ------
+        InputError
+            If the library that it stands on is missing, or cannot hold the scene, or has no such query.
+        """
+        within, query = self.within or 0.0, self.name.query
+        close_pairs = self.close_pairs_of(scene, plan, near_radii(scene, within))
+        return KernelNearPairs(scene, close_pairs, query, within, self.tolerance)
+
+    def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:
+        """What finds impacts, loaded with the scene; raises as `near_finder` does."""
+        return KernelImpacts(scene, partial(self.close_pairs_of, scene, plan), self.tolerance)
+
     def decide_detection(self, scene: Scene, decisions: Decisions) -> None:
         """Decide on the stages of detection; without any, nothing of it is known."""
 
@@ -71,14 +102,27 @@ class SteppedMethod(Method):
         pairs = self._pairs(scene, flown, decisions)
         _response(law, pairs, decisions)
         self._walls(scene, law, flown, pairs, decisions)
-        decide_penetration(scene, decisions)
+        if self.name.query == "collision":
+            decide_penetration(scene, decisions)
+        else:
+            why = f"query {self.name.query} does not ask how deep bodies are in each other"
+            decisions.take("penetration", False, why, fixed=why)
         decide_recording(recorded, decisions)
         return decisions.finish(self.warnings(scene))
 
     def load(self, scene: Scene, plan: Plan) -> Pipeline:
-        return Stepping(scene, plan, self.detector(scene, plan) if plan.keeps("pairs") else None)
+        pairs = plan.keeps("pairs")
+        if self.name.query in NEAR_QUERIES:
+            finder = self.near_finder(scene, plan) if pairs else None
+            return NearAsking(scene, plan, finder, gaps=self.name.query == "distance")
+        if self.name.query == "impact":
+            return ImpactAsking(scene, plan, self.impact_finder(scene, plan) if pairs else None)
+        return Stepping(scene, plan, self.detector(scene, plan) if pairs else None)
 
     def warm_ups(self) -> Iterator[WarmUp]:
+        if self.name.query != "collision":
+            yield f"{self.name.query} of {self.name.shape}s by {self.name.algorithm}", partial(_ask_frames, self)
+            return
         shape: Shape = "sphere" if self.name.shape == "sphere" else "hull"
         yield f"frames of {shape}s", partial(_fly_frames, shape)
 
@@ -109,14 +153,22 @@ class SteppedMethod(Method):
             decisions.take("pairs", False, why, fixed=why)
             self.no_detection(why, decisions, fixed=why)
             return False
-        if self.leaves_out and no_pair_can_meet(scene, flown):
-            why = f"no two of {count} bodies can meet in {flown:g} s at their speeds"
+        if self.leaves_out and no_pair_can_meet(scene, flown, self.within or 0.0):
+            met = f"come within {self.within:g} m" if self.within else "meet"
+            why = f"no two of {count} bodies can {met} in {flown:g} s at their speeds"
             if not decisions.take("pairs", False, why):
                 self.no_detection(why, decisions, fixed="no pair is tested; keep pairs")
                 return False
-        else:
+        elif self.name.query == "collision":
             decisions.take("pairs", True, self.finding(count), fixed="hits would be missed")
-        self.decide_detection(scene, decisions)
+        else:
+            asked = QUERIES[self.name.query].replace("`within`", f"{self.within or 0.0:g} m")
+            decisions.take("pairs", True, f"{self.name.query}: {asked}", fixed="the question would go unanswered")
+        if self.name.query == "collision":
+            self.decide_detection(scene, decisions)
+        else:
+            near = f"come within {self.within:g} m" if self.within else "may touch on the way to the next frame"
+            self.decide_cull(scene, near, decisions)
         return True
 
     def _walls(self, scene: Scene, law: MotionLaw, flown: float, pairs: bool, decisions: Decisions) -> None:
@@ -183,6 +235,13 @@ def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
     else:
         why = f"touching pairs that approach are answered ({law.response})"
         decisions.take("response", True, why, fixed="hits would not be answered; choose response none for that")
+
+
+def _ask_frames(method: SteppedMethod) -> None:
+    """Two frames of two bodies that meet, by the method as it is."""
+    scene, dt = two_bodies(method.name.shape), 0.3
+    law = MotionLaw(2 * dt, dt, "none")
+    method.load(scene, method.plan(scene, law)).fly(law, traced=True)
 
 
 class _AlwaysTouching:

@@ -6,7 +6,7 @@ the plan keeps; what it leaves out is not there to be asked.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -19,6 +19,7 @@ from harness.measure.clocks import Clock
 from harness.measure.conservation import energy
 from harness.methods.observer import Folds, Observer, Onsets
 from harness.methods.stages import Plan
+from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.course import CourseLog, folded_course
 from harness.motion.finite import require_finite_state
 from harness.motion.hit_states import HitStateLog, RecordedResponse
@@ -32,7 +33,6 @@ from harness.scene.scene import Scene
 
 _UNTIMED = ""
 """The clock of a step that no clock sees."""
-PHASES = ("pair_seconds", "response_seconds", "box_seconds")
 
 
 @dataclass
@@ -124,8 +124,8 @@ class Stepping:
         }
         metrics = {
             **counted,
-            **_rates(counted, len(scene.bodies), law.frames, end),
-            **_clock_metrics(clock, law.frames, end),
+            **rates(counted, len(scene.bodies), law.frames, end),
+            **clock_metrics(clock, law.frames, end),
             **_errors(observer, response, plan),
         }
         trace = _trace(scene, trajectory, observer, states, end, counted) if traced else None
@@ -292,29 +292,6 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Trajectory], Flags]:
 def _pair_counters(detector: Detector | None) -> dict[str, float]:
     """`pair_tests`, `narrow_tests` and what else the detector has counted so far, if it counts."""
     return {"pair_tests": 0, "narrow_tests": 0} if detector is None else dict(getattr(detector, "counters", {}))
-
-
-def _rates(counted: Mapping[str, float], bodies: int, frames: int, simulated: float) -> dict[str, float]:
-    rates = {}
-    if "pair_tests" in counted and bodies and frames:
-        rates["pair_tests_per_body"] = counted["pair_tests"] / (bodies * frames)
-    if bodies and simulated > 0.0:
-        rates["collision_rate"] = 2.0 * counted["pair_hits"] / (bodies * simulated)
-    return rates
-
-
-def _clock_metrics(clock: Clock, frames: int, simulated: float) -> dict[str, float]:
-    seconds = clock.metrics()
-    for kind in ("", "_elapsed"):
-        run = sum(seconds[f"{phase}{kind}"] for phase in PHASES)
-        seconds[f"run_seconds{kind}"] = run
-        if frames:
-            seconds[f"pair_seconds_per_frame{kind}"] = seconds[f"pair_seconds{kind}"] / frames
-            seconds[f"box_seconds_per_frame{kind}"] = seconds[f"box_seconds{kind}"] / frames
-        if frames and run > 0.0:
-            seconds[f"frames_per_second{kind}"] = frames / run
-            seconds[f"simulated_per_second{kind}"] = simulated / run
-    return seconds
 
 
 def _errors(observer: Observer, response: CollisionResponse | None, plan: Plan) -> dict[str, float]:

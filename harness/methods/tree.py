@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from harness.arrays import Floats
 from harness.broadphase.pairs import BroadPhase
 from harness.methods.culled import FCL_DECIDES, Culled, no_solids
 from harness.methods.method import WarmUp
@@ -35,6 +36,11 @@ class Tree(Culled):
         from harness.backends.fcl_tree import FclTree
 
         return FclTree(scene)
+
+    def close_pairs_of(self, scene: Scene, plan: Plan, radii: Floats) -> BroadPhase:
+        from harness.backends.fcl_tree import FclTree
+
+        return FclTree(scene, radii)
 
     def warm_ups(self) -> Iterator[WarmUp]:
         # kernels of the other stages are called only where they are forced on

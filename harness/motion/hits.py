@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
+from harness.motion.answers import NearAnswers
 from harness.motion.course import Course
 from harness.motion.hit_states import HitStates
 from harness.vocabulary import WALLS
@@ -60,15 +61,8 @@ class Trace:
     positions, velocities : (n, 3) float arrays at that time, m and m/s
     energy : J, translational, at that time
     counters : of the run
+    near : whether a pair's event is that it came near, which is not asked whether they touch
     states : of the bodies of every hit, where they were asked for
-
-    Examples
-    --------
-    >>> import harness
-    >>> trace = harness.trace(harness.load("experiments/quickstart.yaml", count=20, duration=2))
-    >>> before, after = trace.states.velocities_before[0], trace.states.velocities_after[0]
-    >>> (before != after).any()
-    True
     """
 
     times: Floats
@@ -79,6 +73,7 @@ class Trace:
     velocities: Floats
     energy: float
     counters: Mapping[str, float]
+    near: bool = False
     states: HitStates | None = None
 
     def to_json(self) -> dict[str, Any]:
@@ -86,7 +81,7 @@ class Trace:
         events: list[dict[str, Any]] = []
         for time, (i, j), wall in zip(self.times.tolist(), self.bodies.tolist(), self.walls.tolist(), strict=True):
             if wall < 0:
-                events.append({"time": time, "kind": "pair", "bodies": [i, j]})
+                events.append({"time": time, "kind": "near" if self.near else "pair", "bodies": [i, j]})
             else:
                 events.append({"time": time, "kind": "wall", "bodies": [i], "wall": WALLS[wall]})
         if self.states is not None:
@@ -128,8 +123,9 @@ _STATE_COLUMNS = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a motion reports: metrics by name, and a trace and a course if they were asked for."""
+    """What a motion reports: metrics by name, and a trace, a course and the answers to its query if asked for."""
 
     metrics: dict[str, float]
     trace: Trace | None
     course: Course | None = None
+    answers: NearAnswers | None = None

@@ -18,8 +18,8 @@ from harness.vocabulary import Response
 SLACK = 1e-9
 
 
-def no_pair_can_meet(scene: Scene, duration: float) -> bool:
-    """Whether it is certain that no two bounding spheres will touch.
+def no_pair_can_meet(scene: Scene, duration: float, within: float = 0.0) -> bool:
+    """Whether it is certain that no two bounding spheres will touch, or come within a gap.
 
     Until two of them do, every speed stays what it is, so that body i stays within |v_i| `duration` of its start. Where
     these reachable spheres are disjoint, no pair can meet. Where their volumes exceed the room, they cannot all be
@@ -29,13 +29,14 @@ def no_pair_can_meet(scene: Scene, duration: float) -> bool:
     ----------
     scene : Scene
     duration : s
+    within : m, the gap
 
     Returns
     -------
     bool
     """
     bodies = scene.bodies
-    reach = (bodies.radii + np.linalg.norm(bodies.velocities, axis=1) * duration) * (1.0 + SLACK)
+    reach = (bodies.radii + 0.5 * within + np.linalg.norm(bodies.velocities, axis=1) * duration) * (1.0 + SLACK)
     if not np.isfinite(reach).all() or (bodies.radii >= scene.box.half.min()).any():
         return False  # a path without room in the box is no straight line
     room = np.prod(2.0 * (scene.box.half + reach.max()))

@@ -39,12 +39,14 @@ class Matching:
     missed : of these, those without a report
     extra : reports without a contact
     errors : (k,) float array, s: reported time - onset, of the matched hits in the order of the contacts
+    matched : (k,) int array, which contacts these are
     """
 
     hits: int
     missed: int
     extra: int
     errors: Floats
+    matched: Ints
 
     @property
     def missed_share(self) -> float:
@@ -91,6 +93,7 @@ def match(contacts: Contacts, times: Floats, pairs: Pairs, until: float) -> Matc
         missed=int(np.count_nonzero(counted & ~matched)),
         extra=len(times) - int(np.count_nonzero(matched)),
         errors=reported - contacts.onset[counted & matched],
+        matched=np.flatnonzero(counted & matched),
     )
 
 

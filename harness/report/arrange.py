@@ -14,7 +14,9 @@ from harness.report.backends.correctness import Correctness
 from harness.report.disputes import disputed
 from harness.report.methods import method_label
 from harness.report.point import METHOD, MeasuredPoint
+from harness.report.quantity import leaf_text
 from harness.report.series import Arrangement, Series, hashable, is_number
+from harness.report.styles import same_colour, style_of
 from harness.report.words import leaf_label
 from harness.store.records import ControlRecord, ExperimentRecord
 from harness.vocabulary import METHOD_LEAVES, MethodName
@@ -48,14 +50,21 @@ def arrange(
     points = [replace(point, disputed=point.row.key in unsure) for point in points] if unsure else points
     report: Mapping[str, Any] = record.specification.get("report") or {}
     swept = [leaf for leaf in record.specification.get("swept") or () if _spread(points, leaf) > 1]
-    x = _x_leaf(points, swept, report.get("x"))
-    others = [leaf for leaf in swept if leaf != x and not _follows(points, leaf, x)]
-    panel_leaf = _panel_leaf(points, others)
+    x: str | None
+    panel_leaf: str | None
+    if report.get("map"):
+        x, panel_leaf, others = _mapped(points, swept, report["map"])
+    else:
+        x = _x_leaf(points, swept, report.get("x"))
+        others = [leaf for leaf in swept if leaf != x and not _follows(points, leaf, x)]
+        panel_leaf = _panel_leaf(points, others)
     lines: dict[str, list[MeasuredPoint]] = {}
     for point in points:
-        lines.setdefault(_key(point, others), []).append(point)
+        # of a map's y, which may be derived, the value as it is written, without what is rounded off it
+        row = leaf_text(point.value(panel_leaf)) if report.get("map") else ""
+        lines.setdefault(row + _key(point, others), []).append(point)
     names = [leaf for leaf in others if leaf != panel_leaf]
-    styles: dict[str, int] = {}
+    styles = _styles({_label(members[0].parameters, names): members[0] for members in lines.values()})
     series = []
     for members in lines.values():
         first = members[0].parameters
@@ -64,7 +73,7 @@ def arrange(
         series.append(
             Series(
                 label,
-                styles.setdefault(label, len(styles)),
+                styles[label],
                 leaf_label(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
                 tuple(members),
                 tuple(point.value(x) for point in members) if x else tuple(None for _ in members),
@@ -80,6 +89,36 @@ def arrange(
         (y,) if isinstance(y, str) else tuple(y),
         _controls(runs, controls),
     )
+
+
+def _styles(series: Mapping[str, MeasuredPoint]) -> dict[str, int]:
+    """The style of each series: that of its method; of a further one of the same method the same colour, if possible.
+
+    Where one method is all there is, the series are numbered.
+    """
+    of_methods = {label: style_of(MethodName.of(point.parameters)) for label, point in series.items()}
+    if len(set(of_methods.values())) == 1 < len(of_methods):
+        return {label: place for place, label in enumerate(series)}
+    found: dict[str, int] = {}
+    reserved = set(of_methods.values())
+    for label, style in of_methods.items():
+        further = [style, *(other for other in same_colour(style) if other not in reserved), *range(24, 240)]
+        found[label] = next(other for other in further if other not in found.values())
+    return found
+
+
+def _mapped(
+    points: Sequence[MeasuredPoint], swept: Sequence[str], axes: Mapping[str, str]
+) -> tuple[str, str, list[str]]:
+    """The leaves of a map: x, panels by y, and the others that neither of the two settles."""
+    x, y = axes["x"], axes["y"]
+    fields = {(_key(point, (x,)), leaf_text(point.value(y))) for point in points}
+
+    def settled(leaf: str) -> bool:
+        pairs = {(_key(point, (x,)), leaf_text(point.value(y)), _key(point, (leaf,))) for point in points}
+        return len(pairs) == len(fields)
+
+    return x, y, [leaf for leaf in swept if leaf not in (x, y) and not settled(leaf)]
 
 
 def _controls(runs: pd.DataFrame, controls: Sequence[ControlRecord]) -> dict[str, Control]:

@@ -16,7 +16,7 @@ from harness.store.records import ExperimentRecord
 from harness.vocabulary import MethodName
 
 # What a run says of the hits that it saw.
-_ANSWERS = ("event_digest", "pair_hits", "pair_contacts")
+_ANSWERS = ("event_digest", "pair_hits", "pair_contacts", "near_pairs")
 
 
 def disputed(record: ExperimentRecord, points: Sequence[MeasuredPoint], known: Correctness) -> frozenset[str]:
@@ -45,11 +45,13 @@ def disputed(record: ExperimentRecord, points: Sequence[MeasuredPoint], known: C
 
 
 def _motion(point: MeasuredPoint) -> str:
-    """What must be the same of two points for their hits to be: the scene, its frames, and what is seen of a body."""
-    seen = [point.parameters.get("shape"), point.parameters.get("dt"), point.row.plan.get("warnings")]
+    """What must be the same of two points for their hits to be: scene, frames, question, and what is seen of a body."""
+    query = MethodName.of(point.parameters).query
+    seen = [point.parameters.get("shape"), point.parameters.get("dt"), query, point.row.plan.get("warnings")]
     return json.dumps([point.scene, seen], sort_keys=True)
 
 
 def _answers(point: MeasuredPoint) -> set[tuple[float, ...]]:
     """What its runs saw: one answer, unless the method gives another each time."""
-    return set(zip(*(point.values(name).tolist() for name in _ANSWERS), strict=False))
+    said = (point.values(name).tolist() for name in _ANSWERS)
+    return set(zip(*(values for values in said if values), strict=False))

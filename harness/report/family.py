@@ -16,7 +16,7 @@ from itertools import combinations
 
 from harness.measure.noise import level
 from harness.measure.statistics import FEWEST_FOR_INTERVAL
-from harness.report.accuracy.tradeoffs import COST, TARGETS, tradeoffs
+from harness.report.accuracy.tradeoffs import COST, tradeoffs
 from harness.report.point import MeasuredPoint
 from harness.report.ranking import change_p_value, paired
 from harness.report.series import Arrangement
@@ -87,7 +87,7 @@ def _pairs(arrangement: Arrangement) -> Iterator[tuple[MeasuredPoint, MeasuredPo
 def _settings(record: ExperimentRecord, arrangement: Arrangement) -> Iterator[tuple[MeasuredPoint, MeasuredPoint]]:
     """The settings that reach an error, each method's cheapest."""
     for tradeoff in tradeoffs(record, arrangement):
-        for target in TARGETS:
+        for target in tradeoff.kind.targets:
             yield from combinations([found.point for _, found in tradeoff.ranked(target)], 2)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from harness.measure.statistics import Summary
 from harness.report.drawing.panels import Panel
 from harness.report.quantity import Scale, number
 
@@ -21,6 +22,19 @@ def spans_logarithms(panel: Panel) -> bool:
 def axis_title(metric: str, unit: Scale) -> str:
     """A metric and the unit that its axis is in."""
     return f"{metric}, {unit.symbol}" if unit.symbol else metric
+
+
+def interval_text(found: Summary, unit: Scale) -> str:
+    """A median with its interval, or its range, for one point.
+
+    >>> interval_text(Summary(2.0, 1.5, 3.0, 0.9375, 5), Scale(1.0, "s")).replace("\u00a0", " ")
+    '2 s (interval 1.50 to 3 s)'
+    """
+    text = unit.with_unit(found.median)
+    if found.n < 2 or found.low == found.high:
+        return text
+    kind = "range" if found.coverage is None else "interval"
+    return f"{text} ({kind} {unit.text(found.low)} to {unit.with_unit(found.high)})"
 
 
 def in_words(panel: Panel) -> str:

@@ -13,6 +13,8 @@ from harness.report.drawing import palette
 from harness.report.figure import Figure
 from harness.report.table import Table
 
+_SCRIPTS = ("sort.js", "finder.js")
+
 
 def render(template: str, **values: Any) -> Markup:
     """A template of `harness/report/templates/`, filled in. What does not come as Markup is escaped."""
@@ -42,7 +44,7 @@ def _environment() -> Environment:
     templates = files("harness.report") / "templates"
     environment.globals |= {
         "style": Markup((templates / "style.css").read_text(encoding="utf-8")),
-        "script": Markup((templates / "sort.js").read_text(encoding="utf-8")),
+        "script": Markup("\n".join((templates / name).read_text(encoding="utf-8") for name in _SCRIPTS)),
         "light": Markup(palette.variables(dark=False)),
         "dark": Markup(palette.variables(dark=True)),
         "outlines": [palette.OUTLINES[marker] for marker in palette.MARKERS],

@@ -11,11 +11,16 @@ from markupsafe import Markup
 
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure
+from harness.report.map.fields import MethodMap, maps_of
+from harness.report.map.figure import map_figure
 from harness.report.missing import is_judged
 from harness.report.quantity import plural
 from harness.report.results import Results
 from harness.report.stability.case import is_case
+from harness.report.weight import weight
 from harness.store.records import VerdictRow
+
+_MOST_FINDINGS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +80,30 @@ class Overview:
                 # ids are unique on a page, and the overview shows figures of many
                 found.append(Card(page, replace(figure, name=f"card{place}") if figure else None))
         return sorted(found, key=lambda card: card.group)
+
+    @cached_property
+    def maps(self) -> list[MethodMap]:
+        """Of who is fastest where: the coarsest first, of each accuracy spheres, convex and concave bodies."""
+        shapes = {shape: place for place, shape in enumerate(("sphere", "hull", "mesh"))}
+        found = maps_of(self.results.pages)
+        return sorted(found, key=lambda made: (made.query, -made.accuracy, shapes.get(made.shape, len(shapes))))
+
+    @cached_property
+    def map_figure(self) -> Figure | None:
+        """All of them in a figure, which can be had as a file."""
+        return replace(map_figure(self.maps), file="map.svg") if self.maps else None
+
+    @cached_property
+    def weightiest(self) -> list[Card]:
+        """The experiments whose findings weigh most, eight at most; those that are only maps are shown as maps."""
+        shown = {made.page.record.name for made in self.maps}
+        found = [card for card in self.cards if card.page.findings.sentences and card.page.record.name not in shown]
+        return sorted(found, key=lambda card: weight(card.page), reverse=True)[:_MOST_FINDINGS]
+
+    @property
+    def further(self) -> int:
+        """How many experiments have found something else."""
+        return sum(bool(card.page.findings.sentences) for card in self.cards) - len(self.weightiest)
 
     @property
     def groups(self) -> list[tuple[str, list[Card]]]:

@@ -73,6 +73,8 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
             missing=missing,
         ),
     )
+    if overview.map_figure is not None:
+        yield overview.map_figure.file, overview.map_figure.document
     for other, content in further:
         yield (
             other.file,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from harness.measure.statistics import Summary
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import MISSING, Scale, number
 
@@ -83,12 +84,19 @@ def measured(point: MeasuredPoint | None, metric: str, unit: Scale, mark: str = 
     found = point.summary(metric) if point else None
     if found is None:
         return failure(point)
+    struck = point is not None and point.is_wrong
+    return replace(measured_summary(found, unit), mark=mark, struck=struck, flag=flag)
+
+
+def measured_summary(found: Summary | None, unit: Scale) -> Entry:
+    """The same of a summary alone."""
+    if found is None:
+        return Entry(MISSING)
     half = (found.high - found.low) / 2
     small = f"±{unit.margin(found.median, half)}" if half > 0 else ""
     if found.outliers and half > 0:
         small += "°"
-    struck = point is not None and point.is_wrong
-    return Entry(unit.text(found.median), small, mark=mark, struck=struck, flag=flag, sort=plain(found.median))
+    return Entry(unit.text(found.median), small, sort=plain(found.median))
 
 
 def failure(point: MeasuredPoint | None) -> Entry:

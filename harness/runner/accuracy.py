@@ -12,20 +12,43 @@ import numpy as np
 
 from harness.experiment.experiment import Point
 from harness.experiment.schema import EngineSpec
+from harness.motion.answers import NearAnswers
 from harness.motion.hits import Trace
 from harness.reference.contacts import Contacts
 from harness.reference.events import Events
+from harness.reference.gap_errors import gap_errors
 from harness.reference.hit_errors import hit_errors
+from harness.reference.late_hits import late_hits
+from harness.reference.near_pairs import NearReference, near_reference
 from harness.reference.position_errors import ReferenceEvents, in_another_unit, position_errors
 from harness.reference.scene_contacts import onset_error, scene_contacts
 from harness.runner.key import sources_hash
-from harness.runner.point import is_stepped
+from harness.runner.point import is_stepped, law_of
 from harness.runner.reference_cache import kept
 from harness.runner.scene_of_point import build_scene
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
 Fly = Callable[[Point, Scene], Trace]
+
+
+def near_errors(point: Point, mesh: Mesh | None, answers: NearAnswers) -> dict[str, float]:
+    """The errors of a run that was asked about near pairs.
+
+    Parameters
+    ----------
+    point : with a reference
+    mesh : that its scene names
+    answers : of the run
+    """
+    reference, within, law = reference_point(point), point.engine.within or 0.0, law_of(point)
+    scene = build_scene(reference, mesh)
+
+    def make() -> dict[str, Any]:
+        return asdict(near_reference(scene, law, within))
+
+    arrays: dict[str, Any] = dict(kept(_key(reference, mesh, within=within, dt=point.motion.dt), make))
+    return gap_errors(scene, law, NearReference(**arrays), answers, within)
 
 
 def errors(point: Point, mesh: Mesh | None, trace: Trace, fly: Fly) -> dict[str, float]:
@@ -43,7 +66,14 @@ def errors(point: Point, mesh: Mesh | None, trace: Trace, fly: Fly) -> dict[str,
         bodies, exact = build_scene(point, mesh).bodies, _reference_events(reference, mesh, fly)
         return position_errors(bodies, trace, exact, motion.duration, motion.response, motion.restitution)
     contacts, error = _reference_contacts(reference, mesh)
-    return hit_errors(contacts, error, trace, motion.dt if is_stepped(point) else None)
+    impacts = point.engine.query == "impact"
+    found = hit_errors(contacts, error, trace, motion.dt if is_stepped(point) and not impacts else None)
+    if impacts:
+        late = late_hits(
+            build_scene(reference, mesh), contacts, trace, point.engine.tolerance, reference.engine.tolerance
+        )
+        found |= {} if late is None else {"late_hits": late}
+    return found
 
 
 def reference_point(point: Point) -> Point:
@@ -86,8 +116,8 @@ def _reference_events(reference: Point, mesh: Mesh | None, fly: Fly) -> Referenc
     )
 
 
-def _key(reference: Point, mesh: Mesh | None) -> str:
-    """Names the reference by all that it follows from; the time step is none of it."""
+def _key(reference: Point, mesh: Mesh | None, **more: float) -> str:
+    """Names the reference by all that it follows from; the time step is none of it, but where `more` has it."""
     parameters = {leaf: value for leaf, value in reference.parameters.items() if leaf != "dt"}
-    content = {**parameters, "mesh": mesh.digest if mesh else None, "sources": sources_hash()}
+    content = {**parameters, **more, "mesh": mesh.digest if mesh else None, "sources": sources_hash()}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

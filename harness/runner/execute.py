@@ -87,7 +87,10 @@ def execute(
         return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome))
     metrics |= invariance(on_demand, scene, partial(_hits_as_planned, method, plan, law))
     if point.reference is not None and not traced:
-        metrics |= accuracy.errors(point, mesh, outcome.trace or hits(point, scene), hits)
+        if outcome.answers is not None:
+            metrics |= accuracy.near_errors(point, mesh, outcome.answers)
+        else:
+            metrics |= accuracy.errors(point, mesh, outcome.trace or hits(point, scene), hits)
     metrics |= from_outcome(scene, replace(outcome, metrics=metrics))
     _require_finite_metrics(metrics)
     return Result(metrics, plan, outcome.trace if traced else None, flights)

@@ -16,7 +16,9 @@ def name_of(point: Point) -> MethodName:
 
 def method_of_point(point: Point) -> Method:
     """The method of a point, set as its engine says."""
-    return method_of(name_of(point), tolerance=point.engine.tolerance, forced=point.engine.stages)
+    return method_of(
+        name_of(point), tolerance=point.engine.tolerance, within=point.engine.within, forced=point.engine.stages
+    )
 
 
 def law_of(point: Point) -> MotionLaw:

@@ -83,7 +83,7 @@ def open_for_writing(path: Path) -> sqlite3.Connection:
             connection.execute("PRAGMA synchronous = FULL")
             connection.execute("PRAGMA foreign_keys = ON")
             if _is_empty(connection):
-                _create(connection)
+                create_tables(connection)
             # SQLite opens a file that it may not write to without an error: this finds out now, not after the first run
             connection.execute("BEGIN IMMEDIATE")
             connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
@@ -170,7 +170,8 @@ def _is_results(connection: sqlite3.Connection, path: Path) -> bool:
     return True
 
 
-def _create(connection: sqlite3.Connection) -> None:
+def create_tables(connection: sqlite3.Connection) -> None:
+    """Make an empty results database."""
     # One transaction, header fields included, so that a file is either empty or whole
     tables = files("harness.store").joinpath("schema.sql").read_text(encoding="utf-8")
     connection.executescript(

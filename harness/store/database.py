@@ -142,7 +142,7 @@ class Database:
                 "ON CONFLICT (experiment, point) DO NOTHING",
                 ((experiment, place, point.key) for place, point in enumerate(points)),
             )
-            _show_leaves(connection)
+            show_leaves(connection)
             return int(experiment)
 
     @property
@@ -319,7 +319,7 @@ def _point(connection: sqlite3.Connection, key: str) -> int:
     return int(found[0])
 
 
-def _show_leaves(connection: sqlite3.Connection) -> None:
+def show_leaves(connection: sqlite3.Connection) -> None:
     """Make the view `runs` anew where it lacks a leaf: every run ever made, with a column a leaf.
 
     The names of leaves are words, so that they need no quoting.

@@ -18,13 +18,18 @@ from harness.scene.scene import Scene
 from tests.conftest import cube_mesh, make_bodies, random_scene
 
 EXAMPLE = Path(__file__).parent / "example_backend"
-CLASSES = {"coal": "Coal", "mujoco": "MuJoCo", "trimesh": "Trimesh"}
+PEERS = {
+    "cgal": ("igl", "Cgal"), "coal": ("coal", "Coal"), "drake": ("pydrake", "Drake"), "ipctk": ("ipctk", "Ipctk"),
+    "mujoco": ("mujoco", "MuJoCo"), "parry3d": ("py_parry3d", "Parry3d"), "rapier3d": ("rapier3d", "Rapier3d"),
+    "trimesh": ("trimesh", "Trimesh"),
+}  # fmt: skip
 
 
-@pytest.fixture(params=CLASSES)
+@pytest.fixture(params=PEERS)
 def peer(request):
-    pytest.importorskip(request.param)
-    return getattr(__import__(f"harness.backends.{request.param}", fromlist=["x"]), CLASSES[request.param])
+    library, name = PEERS[request.param]
+    pytest.importorskip(library)
+    return getattr(__import__(f"harness.backends.{request.param}", fromlist=["x"]), name)
 
 
 def touching(backend, scene):
@@ -57,10 +62,23 @@ def test_a_peer_keeps_to_the_band_it_states(peer, shape, size):
 def test_a_peer_says_what_it_is(peer):
     assert units(peer())
     assert precision(peer())
-    scene, backend = random_scene("hull", 2, 5.0), peer()
+    scene, backend = random_scene(peer.shapes[-1], 2, 5.0), peer()
     backend.load(scene)
     with pytest.raises(ValueError, match="not finite"):
         backend.pairs(np.full((2, 3), np.nan), scene.bodies.quaternions)
+
+
+@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+def test_parry_says_which_pairs_fcl_finds_near(shape):
+    pytest.importorskip("py_parry3d")
+    scene, within = random_scene(shape, 40, 4.5, seed=3), 0.2
+    poses = scene.bodies.positions, scene.bodies.quaternions
+    parry, fcl = registry.create("parry3d"), registry.create("fcl")
+    for backend in (parry, fcl):
+        backend.load(scene)
+    near = parry.near(*poses, within).tolist()
+    assert near == fcl.distances(*poses, within).pairs.tolist()
+    assert len(near) > len(parry.pairs(*poses)) > 5
 
 
 def test_mujoco_hands_out_the_hulls_that_it_holds():

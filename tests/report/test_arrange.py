@@ -1,7 +1,9 @@
 """Points arranged into series."""
 
 from harness.report.arrange import arrange
+from harness.report.styles import style_of
 from harness.store.tables import experiments, runs
+from harness.vocabulary import MethodName
 
 
 def arranged(database, name):
@@ -28,9 +30,8 @@ def test_too_many_series_are_split_into_panels_by_the_scene(database):
     found = arranged(database, "homework/algorithms")
     assert found.panels == ("box_ratio 0.01", "box_ratio 0.04", "box_ratio 0.25")
     assert {series.label: series.style for series in found.series} == {
-        "fcl brute-force": 0,
-        "own grid": 1,
-        "own predictive": 2,
+        name.label: style_of(name)
+        for name in (MethodName("fcl", word, "sphere") for word in ("brute-force", "grid", "predictive"))
     }
 
 

@@ -15,7 +15,7 @@ from harness.errors import InputError
 from harness.report.site import render, write_report
 from harness.store.database import Database
 from harness.store.tables import experiments, runs
-from tests.report.conftest import FEW, write
+from tests.report.conftest import FEW, Invented, write
 
 VOID = {"meta", "br", "img", "hr", "input", "link", "path", "rect", "use"}
 
@@ -61,9 +61,17 @@ class Outline(HTMLParser):
 
 @pytest.mark.slow
 def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
-    links = re.findall(r'<h[34]><a href="([^"]+)"', pages["index.html"])
-    assert len(links) == len(experiments(database))
-    assert set(links) <= pages.keys()
+    for name in ("index.html", "experiments.html"):
+        links = re.findall(r'<h[234]><a href="([^"]+)"', pages[name])
+        assert len(links) == len(experiments(database))
+        assert set(links) <= pages.keys()
+
+
+def test_the_overview_shows_few_findings_and_says_where_the_others_are(tmp_path):
+    many = [Invented(f"x{place}", f"X{place}", {"count": [10, 40, 160]}, {}) for place in range(12)]
+    overview = dict(render(write(tmp_path / "x.db", many)))["index.html"]
+    assert overview.split('id="findings"')[1].split("</ul>")[0].count("<li>") == 8
+    assert "4 more stand under their" in overview
 
 
 def test_pages_are_well_formed_with_unique_ids_that_references_meet(pages):

@@ -15,6 +15,25 @@ METRICS = (
         "extra_hits", "1", "error", "hits reported that the reference does not have, of the reference's hits",
         exact=True,
     ),
+    Metric(
+        "late_hits", "1", "error",
+        "matched hits reported later than the truth by more than tolerance of a size at the closing speed, of query "
+        "impact, of all matched ones", exact=True,
+    ),
+    Metric(
+        "missed_pairs", "1", "error", "near pairs of the reference that were not reported, of the reference's pairs",
+        exact=True,
+    ),
+    Metric(
+        "extra_pairs", "1", "error", "near pairs reported that the reference does not have, of the reference's pairs",
+        exact=True,
+    ),
+    Metric("gap_error", "m", "error", "median absolute error of the gaps of matched pairs"),
+    _hidden("gap_error_95", "m", "95th percentile of the absolute errors of the gaps of matched pairs"),
+    _hidden("gap_error_most", "m", "largest absolute error of the gap of a matched pair"),
+    _hidden("witness_error", "m", "most that nearest points are off the bodies, or farther apart than the gap"),
+    _hidden("reference_pairs", "1", "near pairs of the reference, in the frames that it looked at", "physics"),
+    _hidden("reference_gap_error", "m", "how far the bounds on a gap of the reference are apart, at the most"),
     Metric("time_error", "s", "error", "median absolute time error of matched hits"),
     _hidden("time_error_95", "s", "95th percentile of the absolute time errors of matched hits"),
     Metric("position_error", "m", "error", "largest distance from the reference before the first divergence"),

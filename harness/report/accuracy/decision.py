@@ -19,7 +19,7 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
         return None
     found = tradeoff.ratios(target)
     best, *others = found
-    what = Markup("For {} at an error of {}, ").format(scene_of(tradeoff), target_text(target))
+    what = Markup("For {} at an error of {}, ").format(scene_of(tradeoff), target_text(target, tradeoff.kind.unit))
     why_not = unranked(entry.told for entry in found)
     if why_not:
         costs = Markup(", ").join(_cost(entry) for entry in sorted(found, key=lambda entry: entry.curve.style))

@@ -10,7 +10,8 @@ from functools import cached_property
 from markupsafe import Markup
 
 from harness.report.accuracy.decision import decision
-from harness.report.accuracy.tables import fastest, followed, hits, orders
+from harness.report.accuracy.error_kind import GAPS, TIMES
+from harness.report.accuracy.tables import every_setting, fastest, followed, orders
 from harness.report.accuracy.texts import time_text
 from harness.report.accuracy.tradeoffs import Tradeoff, tradeoffs
 from harness.report.experiment import ExperimentPage
@@ -50,7 +51,9 @@ class ExperimentAccuracy:
         """Who is fastest at which error, orders of convergence, and every setting with its hits."""
         found = [fastest(tradeoff) for tradeoff in self.scenes]
         found += [table for table in (orders(self.tradeoffs),) if table is not None]
-        found += [hits(self.tradeoffs)] if self.tradeoffs else []
+        for kind in (TIMES, GAPS):
+            of_kind = [tradeoff for tradeoff in self.tradeoffs if tradeoff.kind is kind]
+            found += [every_setting(of_kind)] if of_kind else []
         return [*found, *([followed(self.page.arrangement)] if self.free else [])]
 
     @property
@@ -67,6 +70,14 @@ class ExperimentAccuracy:
                 Markup(
                     "Of the reference's {} hits a sample was checked: its times are right to <strong>{}</strong>."
                 ).format(number(_largest(points, "reference_hits")), time_text(worst))
+            )
+        if (bounds := _largest(points, "reference_gap_error")) is not None:
+            pairs = number(_largest(points, "reference_pairs"))
+            sentences.append(
+                Markup(
+                    "The gaps of {} near pairs were bounded from both sides, by points and by planes, to "
+                    "<strong>{} m</strong>."
+                ).format(pairs, number(bounds))
             )
         if (agrees := _largest(points, "reference_divergence_time")) is not None:
             sentences.append(

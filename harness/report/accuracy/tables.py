@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from harness.measure.statistics import CONFIDENCE
-from harness.report.accuracy.texts import WRONG_TEXT, knob_text, scene_of, target_text, time_text
-from harness.report.accuracy.tradeoffs import MOST_WRONG, TARGETS, Curve, Tradeoff
+from harness.report.accuracy.texts import WRONG_TEXT, error_text, knob_text, scene_of, target_text
+from harness.report.accuracy.tradeoffs import MOST_WRONG, Curve, Tradeoff
 from harness.report.quantity import exponent_text, leaf_text, number, scale
 from harness.report.ranking import unranked
 from harness.report.series import Arrangement
@@ -27,11 +27,12 @@ def fastest(tradeoff: Tradeoff) -> Table:
     unit = scale([found.cost.median for _, found in tradeoff.settings], "s")
     rows = []
     reasons: dict[str, None] = {}  # why errors have no cheapest method
-    for target in TARGETS:
+    kind = tradeoff.kind
+    for target in kind.targets:
         reached = {entry.curve.label: entry for entry in tradeoff.ratios(target)}
         why_not = unranked(entry.told for entry in reached.values())
         reasons |= {why_not: None} if why_not else {}
-        row = [Entry(target_text(target), numeric=False, sort=target)]
+        row = [Entry(target_text(target, kind.unit), numeric=False, sort=target)]
         for curve in tradeoff.curves:
             if curve.label not in reached:
                 row.append(Entry("", flag=_why_not(curve), sort=math.inf))
@@ -45,9 +46,10 @@ def fastest(tradeoff: Tradeoff) -> Table:
         rows.append(tuple(row))
     columns = (Column("Error", numeric=False), *(Column(curve.label, unit.symbol) for curve in tradeoff.curves))
     note = (
-        f"CPU time of the cheapest setting that was measured to have no larger a median error, in {unit.symbol}, with "
-        "half its interval and its setting. Bold: cheapest, or not to be told from it. A method that misses more than "
-        f"{WRONG_TEXT} of the hits, or reports as many that are none, does not reach any error."
+        f"CPU time of the cheapest setting whose {kind.typical} error of {kind.of} was measured to be no larger, in "
+        f"{unit.symbol}, with half its interval and its setting. Bold: cheapest, or not to be told from it. A method "
+        f"that misses more than {WRONG_TEXT} of the {kind.things}, or reports as many that are none, reaches no "
+        "error."
     )
     if reasons:
         note += f" Nothing is bold for {', or '.join(reasons)}."
@@ -86,8 +88,9 @@ def orders(found: Sequence[Tradeoff]) -> Table | None:
     return Table("Observed order of convergence", note, columns, tuple(rows))
 
 
-def hits(found: Sequence[Tradeoff]) -> Table:
-    """Every method at every setting: its cost, its errors, and the hits that it missed or invented."""
+def every_setting(found: Sequence[Tradeoff]) -> Table:
+    """Every method at every setting: its cost, its errors, and what it missed or invented; of one kind of error."""
+    kind = found[0].kind
     settings = [(tradeoff, curve, entry) for tradeoff in found for curve, entry in tradeoff.settings]
     unit = scale([entry.cost.median for _, _, entry in settings], "s")
     places = any(tradeoff.place for tradeoff in found)
@@ -99,21 +102,26 @@ def hits(found: Sequence[Tradeoff]) -> Table:
         knob = f"{curve.knob} {leaf_text(entry.knob)}" if curve.knob else "exact"
         row += [Entry(knob, numeric=False, mark="keep", sort=entry.knob)]
         row += [Entry(unit.text(entry.cost.median), sort=plain(entry.cost.median))]
-        row += [_seconds(entry.point.median(name)) for name in ("time_error", "time_error_95")]
-        row += [_share(entry.point.median(name)) for name in ("missed_hits", "extra_hits")]
+        row += [_seconds(entry.point.median(name)) for name in (kind.metric, kind.tail)]
+        row += [_share(entry.point.median(name)) for name in (kind.missed, kind.extra)]
         row += [_share(entry.point.median("missed_hits_expected"), flagged=False)] if expected else []
-        row += [counted(entry.point.median("reference_hits"))]
+        row += [counted(entry.point.median(kind.known))]
         rows.append(tuple(row))
     columns = [Column("Method", numeric=False)]
     columns += [Column("Scene", numeric=False)] if places else []
-    columns += [Column("Setting", numeric=False), Column("CPU time", unit.symbol), Column("Median error", "s")]
-    columns += [Column("95th percentile", "s"), Column("Missed"), Column("Extra")]
+    columns += [
+        Column("Setting", numeric=False),
+        Column("CPU time", unit.symbol),
+        Column(f"{kind.typical.capitalize()} error", kind.unit),
+    ]
+    columns += [Column(kind.tail_title, kind.unit), Column("Missed"), Column("Extra")]
     columns += [Column("Missed by the formula")] if expected else []
-    columns += [Column("Hits of the reference")]
-    note = f"Missed and extra hits are shares of the reference's hits; above {WRONG_TEXT} they are flagged."
+    columns += [Column(f"{kind.things.capitalize()} of the reference")]
+    things = kind.things
+    note = f"Missed and extra {things} are shares of the reference's {things}; above {WRONG_TEXT} they are flagged."
     if expected:
         note += " By the tunnelling formula, a contact of length τ is missed with the probability max(0, 1 − τ/dt)."
-    return Table("Every setting, and the hits it saw", note, tuple(columns), tuple(rows))
+    return Table(f"Every setting, and the {kind.things} it saw", note, tuple(columns), tuple(rows))
 
 
 def followed(arrangement: Arrangement) -> Table:
@@ -140,8 +148,9 @@ def _why_not(curve: Curve) -> str:
     """Why a method does not reach an error."""
     sound = [found.error for found in curve.settings if found.sees_all_hits]
     if sound:
-        return f"{time_text(min(sound))} at best"
-    return f"{number(100 * min(found.wrong for found in curve.settings))} % of hits wrong"
+        return f"{error_text(min(sound), curve.settings[0].kind.unit)} at best"
+    things = curve.settings[0].kind.things
+    return f"{number(100 * min(found.wrong for found in curve.settings))} % of {things} wrong"
 
 
 def _seconds(value: float) -> Entry:

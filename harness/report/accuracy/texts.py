@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from harness.measure.statistics import Summary
+from harness.report.accuracy.error_kind import GAPS
 from harness.report.accuracy.tradeoffs import MOST_WRONG, Curve, Setting, Tradeoff
 from harness.report.quantity import leaf_text, number, power_of_ten, quantity
 from harness.report.words import scene_text
@@ -20,7 +21,8 @@ def scene_of(tradeoff: Tradeoff) -> str:
     first["shape"] = next((shape for shape in ("mesh", "hull", "sphere") if shape in shapes), None)
     if first.get("count") is None and isinstance(first.get("bodies"), list):
         first["count"] = len(first["bodies"])
-    return ", ".join(part for part in (scene_text(first), tradeoff.place) if part)
+    asked = f"gaps up to {leaf_text(first.get('within'))}\u00a0m" if tradeoff.kind is GAPS else ""
+    return ", ".join(part for part in (scene_text(first), asked, tradeoff.place) if part)
 
 
 def knob_text(curve: Curve, setting: Setting) -> str:
@@ -29,14 +31,19 @@ def knob_text(curve: Curve, setting: Setting) -> str:
     return f" ({curve.knob} {leaf_text(setting.knob)})" if several else ""
 
 
-def target_text(target: float) -> str:
+def target_text(target: float, unit: str) -> str:
     """An error to be reached: "10⁻⁴ s"."""
-    return f"{power_of_ten(round(math.log10(target)))}\u00a0s"
+    return f"{power_of_ten(round(math.log10(target)))}\u00a0{unit}"
 
 
 def time_text(value: float) -> str:
     """A time; below what any clock resolves it stays in seconds."""
     return quantity(value, "s") if value >= 1e-9 or value == 0.0 else f"{number(value)}\u00a0s"
+
+
+def error_text(value: float, unit: str) -> str:
+    """An error in its unit."""
+    return time_text(value) if unit == "s" else f"{number(value)}\u00a0{unit}"
 
 
 def interval_text(ratio: Summary | None) -> str:

@@ -14,6 +14,7 @@ from typing import Any
 
 from harness.measure.resolution import Outcome, Resolution
 from harness.measure.statistics import Exponent, Summary, fit_exponent
+from harness.report.accuracy.error_kind import ErrorKind, error_kind
 from harness.report.methods import method_label
 from harness.report.point import MeasuredPoint
 from harness.report.ranking import times_worse, told
@@ -22,31 +23,28 @@ from harness.report.words import leaf_label
 from harness.store.records import ExperimentRecord
 from harness.vocabulary import KNOBS, METHOD_LEAVES, MethodName
 
-COST, ERROR = "run_seconds", "time_error"
+COST = "run_seconds"
 # Of the reference's hits, how many a method may miss, and how many more it may report, to count as right.
 MOST_WRONG = 0.01
-TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-# At which of these a sentence says what to use, if anything reaches it.
-PREFERRED = 1e-4
 FEWEST_SETTINGS = 3
 
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """A method at one setting of its knob."""
+    """A method at one setting of its knob; its error is of a kind."""
 
     point: MeasuredPoint
     knob: float
     cost: Summary
     error: float
     reference_error: float
+    kind: ErrorKind
 
     @property
     def wrong(self) -> float:
-        """The larger of the shares of missed and of extra hits; 0 where hits are not matched."""
-        return max(
-            (share for name in ("missed_hits", "extra_hits") if (share := self.point.median(name)) > 0), default=0
-        )
+        """The larger of the shares of what it missed and of what it invented; 0 where they are not matched."""
+        names = (self.kind.missed, self.kind.extra)
+        return max((share for name in names if (share := self.point.median(name)) > 0), default=0)
 
     @property
     def sees_all_hits(self) -> bool:
@@ -84,7 +82,7 @@ class Curve:
     @property
     def order(self) -> Exponent | None:
         """The power of the time step with which the error falls; None of methods without one."""
-        if not self.method.stepped:
+        if self.method.knob != "dt":
             return None
         fit = fit_exponent({found.knob: [found.error] for found in self.settings if found.sees_all_hits})
         return fit if fit.n >= 2 else None
@@ -119,6 +117,11 @@ class Tradeoff:
     place: str
     curves: tuple[Curve, ...]
     resolution: Resolution
+
+    @property
+    def kind(self) -> ErrorKind:
+        """What errors are here, of all methods alike."""
+        return self.curves[0].settings[0].kind
 
     @property
     def settings(self) -> list[tuple[Curve, Setting]]:
@@ -163,8 +166,8 @@ class Tradeoff:
     @property
     def decided(self) -> float | None:
         """The error at which to say what to use: the preferred one, else the smallest that anything reaches."""
-        reached = [target for target in TARGETS if self.ranked(target)]
-        return PREFERRED if PREFERRED in reached else min(reached, default=None)
+        reached, preferred = [target for target in self.kind.targets if self.ranked(target)], self.kind.preferred
+        return preferred if preferred in reached else min(reached, default=None)
 
 
 def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeoff]:
@@ -213,11 +216,13 @@ def _is_of_curve(leaf: str) -> bool:
 
 
 def _setting(point: MeasuredPoint, knob: str) -> Setting | None:
-    cost, error = point.summary(COST), point.median(ERROR)
+    kind = error_kind(point.parameters)
+    cost, error = point.summary(COST), point.median(kind.metric)
     if cost is None or not math.isfinite(error) or not cost.median > 0:
         return None
-    checked = point.median("reference_error")
-    return Setting(point, float(point.parameters[knob]), cost, error, checked if math.isfinite(checked) else 0.0)
+    checked = point.median(kind.reference)
+    known = checked if math.isfinite(checked) else 0.0
+    return Setting(point, float(point.parameters[knob]), cost, error, known, kind)
 
 
 def _differing(points: Sequence[MeasuredPoint], wanted: Any) -> list[str]:

@@ -24,6 +24,11 @@ class Comparisons:
 
     records: Sequence[ComparisonRecord]
 
+    @property
+    def of_two(self) -> Comparisons:
+        """Those of two backends, without the atlases, which hold one against exact arithmetic."""
+        return Comparisons([record for record in self.records if not record.document.get("atlas")])
+
     @cached_property
     def pairs(self) -> list[dict[str, Any]]:
         """The tallies of all records, each with its experiment."""

@@ -23,10 +23,12 @@ class Correctness:
     ----------
     verdicts : by method, how many of its verdicts were held against another method's
     wrong : by method, how often it was wrong outside of its tolerance, or failed
+    in_part : those of which a comparison left something out
     """
 
     verdicts: Mapping[MethodName, int] = field(default_factory=dict)
     wrong: Mapping[MethodName, int] = field(default_factory=dict)
+    in_part: frozenset[MethodName] = frozenset()
 
     def is_wrong(self, method: MethodName) -> bool:
         """Whether it was proven wrong, or failed."""
@@ -38,19 +40,28 @@ class Correctness:
 
 
 def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
-    """What comparisons have found, method by method. A wrong verdict counts for every shape of its comparison."""
+    """What comparisons have found, method by method.
+
+    A wrong verdict counts for its shape; a failure, and a verdict of a database that knows no shape of it, for every
+    shape of its comparison.
+    """
     verdicts: Counter[MethodName] = Counter()
     wrong: Counter[MethodName] = Counter()
+    in_part: set[MethodName] = set()
     for record in records:
         tallies = record.document["pairs"]
         for tally in tallies:
             for name in tally["backends"]:
-                verdicts[MethodName.read(name, tally["shape"])] += tally["verdicts"]
+                method = MethodName.read(name, tally["shape"])
+                verdicts[method] += tally["verdicts"]
+                if record.document.get("left_out"):
+                    in_part.add(method)
         for case in record.document["cases"] + record.document["shared"] + record.document.get("findings", []):
-            for shape in sorted({tally["shape"] for tally in tallies}):
+            shapes = {case["shape"]} if case.get("shape") else {tally["shape"] for tally in tallies}
+            for shape in sorted(shapes):
                 for name in case["wrong"].split(" and "):
                     wrong[MethodName.read(name, shape)] += 1
-    return Correctness(verdicts, wrong)
+    return Correctness(verdicts, wrong, frozenset(in_part))
 
 
 def newest(records: Sequence[ComparisonRecord]) -> list[ComparisonRecord]:

@@ -103,7 +103,8 @@ def _correctness(method: MethodName, known: Correctness) -> Entry:
         return words("", flag=f"wrong {plural(known.wrong[method], 'time')}")
     if not known.is_right(method):
         return words("not compared")
-    return words(f"never wrong in {plural(known.verdicts[method], 'verdict')}")
+    part = ", compared in part" if method in known.in_part else ""
+    return words(f"never wrong in {plural(known.verdicts[method], 'verdict')}{part}")
 
 
 def _scene_text(leaves: Sequence[str], values: Sequence[float]) -> str:

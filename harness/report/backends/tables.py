@@ -51,7 +51,11 @@ def by_experiment(compared: Comparisons) -> Table:
         Column("poses"), Column("verdicts"), Column("agree"), Column("undecided"), Column("containment"),
         Column("approximation"), Column("real"), Column("crashes"),
     )  # fmt: skip
-    note = "Poses as bodies fly through each other, and pairs put where verdicts are hard."
+    note = (
+        "Poses as bodies fly through each other, and pairs put where verdicts are hard. Of a method that computes "
+        "events, a verdict is a contact that begins while bodies approach: when it does, or that it does, is held "
+        "against exact arithmetic."
+    )
     return Table("By experiment", note, columns, tuple(rows))
 
 

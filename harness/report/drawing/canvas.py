@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 import matplotlib as mpl
+from markupsafe import escape
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
@@ -37,6 +38,7 @@ class Canvas:
         self.width = width
         self.height = height
         self.font = font
+        self._hovers: list[tuple[float, float, float, float, str]] = []
         self._figure = Figure(figsize=(width / 72, height / 72), dpi=72)
         self._figure.patch.set_visible(False)
 
@@ -62,10 +64,14 @@ class Canvas:
             )
         )  # fmt: skip
 
-    def area(self, xs: Sequence[float], ys: Sequence[float], colour: str) -> None:
+    def area(self, xs: Sequence[float], ys: Sequence[float], colour: str, alpha: float = 0.2) -> None:
         """A filled outline, pale."""
         corners = list(zip(xs, ys, strict=True))
-        self._figure.add_artist(Polygon(corners, color=colour, alpha=0.2, linewidth=0, transform=IdentityTransform()))
+        self._figure.add_artist(Polygon(corners, color=colour, alpha=alpha, linewidth=0, transform=IdentityTransform()))
+
+    def hover(self, x: float, y: float, width: float, height: float, text: str) -> None:
+        """A text that shows while a pointer is over a rectangle with this lower left corner."""
+        self._hovers.append((x, self.height - y - height, width, height, text))
 
     def text(
         self,
@@ -103,7 +109,15 @@ class Canvas:
         text = re.sub(r"<[^>]+>", _shortened, text)
         text = re.sub(r">\s+<", "><", re.sub(r"\s*\n\s*", " ", text))
         text = re.sub(r"<g>((?:<use [^>]*/>)+)</g>", _styled_once, text)
-        return _named(text, name).strip()
+        return _named(text, name).strip().replace("</svg>", f"{self._hover_elements()}</svg>")
+
+    def _hover_elements(self) -> str:
+        elements = [
+            f'<rect x="{x:.4g}" y="{y:.4g}" width="{width:.4g}" height="{height:.4g}">'
+            f"<title>{escape(text)}</title></rect>"
+            for x, y, width, height, text in self._hovers
+        ]
+        return f'<g fill="none" pointer-events="all">{"".join(elements)}</g>' if elements else ""
 
 
 def _shortened(tag: re.Match[str]) -> str:

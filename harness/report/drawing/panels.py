@@ -23,6 +23,7 @@ from harness.report.drawing.canvas import Canvas
 from harness.report.quantity import number
 
 _CARD_FONT = 11.0
+_POINTER = 9.0  # px around a point in which its text shows
 _ROW = 17.0  # px between direct labels
 _LEFT = 84.0  # px for tick labels and the turned y label
 
@@ -32,7 +33,8 @@ class Line:
     """One series in a panel; `low` and `high` bound its band, where it has one.
 
     A dashed line with hollow markers is somebody else's: published, not measured here. `spans` are the intervals of x,
-    where it was measured too; `doubtful` are the places of the points that do not count, drawn hollow.
+    where it was measured too; `texts` show while a pointer is over a point; `doubtful` are the places of the points
+    that do not count, drawn hollow.
     """
 
     label: str
@@ -44,6 +46,7 @@ class Line:
     foreign: bool = False
     spans: tuple[tuple[float, float], ...] = ()
     doubtful: tuple[int, ...] = ()
+    texts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -140,6 +143,9 @@ def _line(canvas: Canvas, panel: Panel, line: Line, frame: Frame, form: Form) ->
     canvas.line(xs, ys, colour, width, dashes=dashes, marker=marker, size=size, hollow=line.foreign)
     for (left, right), y in zip(line.spans, ys if line.spans else (), strict=True):
         canvas.line([frame.x(left), frame.x(right)], [y, y], colour, 4.0, alpha=0.45)
+    if form != "card":
+        for x, y, text in zip(xs, ys, line.texts, strict=False):
+            canvas.hover(x - _POINTER, y - _POINTER, 2 * _POINTER, 2 * _POINTER, text)
     for place in line.doubtful:
         canvas.line([xs[place]], [ys[place]], colour, 0.0, marker=marker, size=size, hollow=True)
 

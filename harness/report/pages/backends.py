@@ -13,10 +13,10 @@ from harness.report.results import Results
 
 
 def _content(results: Results) -> Content | None:
-    compared = results.compared
+    compared = results.compared.of_two
     if not compared.records:
         return None
-    known = correctness(compared.records)
+    known = correctness(results.compared.records)
     names = {record.experiment for record in compared.records}
     pages = sorted((page for page in results.pages if page.record.name in names), key=lambda page: page.record.name)
     speeds = [table for page in pages if (table := speed_table(page, known)) is not None]

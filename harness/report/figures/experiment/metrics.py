@@ -11,10 +11,10 @@ from dataclasses import replace
 from harness.report.drawing.panels import Line, Panel, draw_panels
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure, FigureSource, Key
-from harness.report.lines import axis_title, in_words, spans_logarithms
+from harness.report.lines import axis_title, in_words, interval_text, spans_logarithms
 from harness.report.quantity import Scale, leaf_text, scale
 from harness.report.series import Arrangement, Series
-from harness.report.words import is_noisy, leaf_title, metric_title, metric_unit
+from harness.report.words import is_noisy, leaf_label, leaf_title, metric_title, metric_unit
 
 _MOST_PANELS = 8
 
@@ -73,7 +73,7 @@ def _panel(arrangement: Arrangement, name: str, metrics: Sequence[str], lines: S
 
 
 def _line(series: Series, metric: str, unit: Scale, arrangement: Arrangement) -> Line:
-    x, y, low, high = [], [], [], []
+    x, y, low, high, texts = [], [], [], [], []
     for point, value in zip(series.points, series.x, strict=True):
         found = point.summary(metric)
         if found is None:
@@ -82,7 +82,12 @@ def _line(series: Series, metric: str, unit: Scale, arrangement: Arrangement) ->
         y.append(found.median / unit.factor)
         low.append(found.low / unit.factor)
         high.append(found.high / unit.factor)
-    return Line(series.label, series.style, tuple(x), tuple(y), tuple(low), tuple(high))
+        texts.append(f"{series.label}, {_place(arrangement, value)}: {interval_text(found, unit)}")
+    return Line(series.label, series.style, tuple(x), tuple(y), tuple(low), tuple(high), texts=tuple(texts))
+
+
+def _place(arrangement: Arrangement, value: object) -> str:
+    return leaf_label(str(arrangement.x), value)
 
 
 def _measured(arrangement: Arrangement, metric: str) -> bool:

@@ -1,4 +1,4 @@
-"""Every experiment with a card, and the cases of stability."""
+"""Every experiment, folder by folder, and the cases of stability."""
 
 from __future__ import annotations
 
@@ -13,4 +13,4 @@ def _html(overview: Overview) -> Markup:
     return render("overview/experiments.html.j2", overview=overview)
 
 
-SECTION = Section("experiments", "Experiments", 40, _html)
+SECTION = Section("experiments", "", 40, _html)

@@ -1,0 +1,148 @@
+"""Lattices of cells: one for each level of bodies of nearly a size, fitted every frame to where bodies are.
+
+A row of cells along z ends with a cell that is always empty, a plane with such a row, and a lattice with such a plane.
+They are the missing neighbours of the cells at the border: no neighbour needs a question whether it exists, and three
+neighbours along z are one run of bodies.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.arrays import Floats
+from harness.kernel import kernel
+
+Levels = NDArray[np.void]
+Level = Any  # one record of Levels, whose fields mypy does not know
+
+LEVEL = np.dtype(
+    [
+        ("reach", np.float64),  # m, the largest radius
+        ("budget", np.int64),  # cells it may have
+        ("begin", np.int64),  # its bodies have the slots from here
+        ("end", np.int64),  # up to here
+        ("first", np.int64),  # its first cell
+        ("cells", np.int64),  # how many it has
+        ("row", np.int64),  # from a cell to its neighbour along y
+        ("plane", np.int64),  # from a cell to its neighbour along x
+        *((f"low_{axis}", np.float64) for axis in "xyz"),  # m, where the lattice starts
+        *((f"last_{axis}", np.float64) for axis in "xyz"),  # the last cell along the axis, counted from 0
+        *((f"scale_{axis}", np.float64) for axis in "xyz"),  # 1/m, cells a length
+    ]
+)
+
+SLACK = 1e-6
+"""Relative surplus of a cell over its largest body: more than rounding can do to fewer than 1e9 cells along an axis."""
+
+
+class Block(NamedTuple):
+    """A block of cells: the first and the last along each axis."""
+
+    x0: int
+    x1: int
+    y0: int
+    y1: int
+    z0: int
+    z1: int
+
+
+@kernel
+def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
+    """Spread each level's lattice over the part of the box where bodies are.
+
+    Bodies beyond the walls belong to the border cells, so that one that has shot far out does not thin out the lattice.
+    """
+    low_x, low_y, low_z = half[0], half[1], half[2]
+    high_x, high_y, high_z = -half[0], -half[1], -half[2]
+    for i in range(len(positions)):
+        x, y, z = positions[i, 0], positions[i, 1], positions[i, 2]
+        low_x, low_y, low_z = min(low_x, x), min(low_y, y), min(low_z, z)
+        high_x, high_y, high_z = max(high_x, x), max(high_y, y), max(high_z, z)
+    x, wide = within_box(low_x, high_x, half[0])
+    y, deep = within_box(low_y, high_y, half[1])
+    z, tall = within_box(low_z, high_z, half[2])
+    first = 0
+    for index in range(len(levels)):
+        level = levels[index]
+        level.low_x, level.low_y, level.low_z = x, y, z
+        fit_cells(level, wide, deep, tall)
+        level.first = first
+        first += level.cells
+
+
+@kernel
+def span(coordinates: Floats, half: float) -> tuple[float, float]:
+    """Where bodies begin along an axis of the box, m, and over which length they spread."""
+    low, high = half, -half
+    for i in range(len(coordinates)):
+        low = min(low, coordinates[i])
+        high = max(high, coordinates[i])
+    return within_box(low, high, half)
+
+
+@kernel
+def within_box(low: float, high: float, half: float) -> tuple[float, float]:
+    """Where an interval begins along an axis of the box, m, and how long it is there."""
+    low = max(low, -half)
+    return low, max(0.0, min(high, half) - low)
+
+
+@kernel
+def fit_cells(level: Level, wide: float, deep: float, tall: float) -> None:
+    """Choose equal cells, cubes or nearly, that hold a body of the level, but no more of them than its budget."""
+    edge = 2.0 * level.reach * (1.0 + SLACK)
+    while True:
+        nx, ny, nz = cells_along(wide, edge), cells_along(deep, edge), cells_along(tall, edge)
+        excess = (nx + 1.0) * (ny + 1.0) * (nz + 1.0) / level.budget
+        if excess <= 1.0:
+            break
+        edge *= max(1.02, excess ** (1.0 / ((nx > 1.0) + (ny > 1.0) + (nz > 1.0))))
+    level.row = int(nz) + 1
+    level.plane = level.row * (int(ny) + 1)
+    level.cells = level.plane * (int(nx) + 1)
+    level.last_x, level.last_y, level.last_z = nx - 1.0, ny - 1.0, nz - 1.0
+    level.scale_x = nx / wide if nx > 1.0 else 0.0
+    level.scale_y = ny / deep if ny > 1.0 else 0.0
+    level.scale_z = nz / tall if nz > 1.0 else 0.0
+
+
+@kernel
+def cells_along(length: float, edge: float) -> float:
+    """How many cells fit, at least one."""
+    return max(1.0, math.floor(length / edge))
+
+
+@kernel
+def cell_at(level: Level, x: float, y: float, z: float) -> int:
+    """The level's cell at a point, m; beyond the border, the nearest."""
+    ix = cell_along(x, level.low_x, level.scale_x, level.last_x)
+    iy = cell_along(y, level.low_y, level.scale_y, level.last_y)
+    iz = cell_along(z, level.low_z, level.scale_z, level.last_z)
+    return int(level.first + ix * level.plane + iy * level.row + iz)
+
+
+@kernel
+def cell_along(x: float, low: float, scale: float, last: float) -> int:
+    """Cell along an axis. It never decreases with x, whatever is rounded: `block_around` relies on it."""
+    return int(min(max((x - low) * scale, 0.0), last))
+
+
+@kernel
+def block_around(level: Level, x: float, y: float, z: float, reach: float) -> Block:
+    """The level's cells within reach of a point along each axis: no body there is in any other cell."""
+    return Block(
+        cell_along(x - reach, level.low_x, level.scale_x, level.last_x),
+        cell_along(x + reach, level.low_x, level.scale_x, level.last_x),
+        cell_along(y - reach, level.low_y, level.scale_y, level.last_y),
+        cell_along(y + reach, level.low_y, level.scale_y, level.last_y),
+        cell_along(z - reach, level.low_z, level.scale_z, level.last_z),
+        cell_along(z + reach, level.low_z, level.scale_z, level.last_z),
+    )
+
+
+@kernel
+def cells_covered(reach: float, scale: float, last: float) -> float:
+    """Cells along an axis within reach of a point, on average, m and 1/m."""
+    return min(1.0 + 2.0 * reach * scale, 1.0 + last)

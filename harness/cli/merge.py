@@ -1,0 +1,28 @@
+"""Bring the results of several machines, or of several files of one, together in the first file.
+
+Every sweep and run of the others is added to it, once: the same command again changes nothing. The others are only
+read. Numbers of two machines are never mixed: of a point that several have measured, pages and exports show the runs of
+the machine that measured it last, and `harness history` shows each machine by itself.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("into", metavar="FILE", type=Path, help="the results that are added to")
+    parser.add_argument("others", metavar="OTHER", type=Path, nargs="+", help="results that are added")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from harness.store.merging import merge
+
+    merged = merge(arguments.into, arguments.others)
+    (sweeps, all_sweeps), (runs, all_runs) = merged.sweeps, merged.runs
+    print(
+        f"{arguments.into}: {all_sweeps - sweeps} sweeps and {all_runs - runs} runs added; "
+        f"now {all_sweeps} sweeps and {all_runs} runs of {merged.machines[1]} machines"
+    )
+    return 0

@@ -1,0 +1,148 @@
+"""Experiments with `measure.families` as an atlas of every installed engine, and what is kept of it.
+
+For `compare`, and for `sweep`, which gives an experiment a time. The engines are all that are installed, so that a new
+one joins by being there, and the grid of this program.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from harness.backends.registry import names as declared
+from harness.backends.registry import packages
+from harness.backends.statement import missing
+from harness.cli.crosscheck import Meshes
+from harness.compare.atlas import JUDGE, Atlas, Cell, survey
+from harness.compare.budget import Budget
+from harness.compare.document import Known, Reduced, document, reduced, shown_case
+from harness.compare.outcome import Comparison
+from harness.compare.script import script_of
+from harness.experiment.experiment import Experiment
+from harness.measure.machine import package_versions
+from harness.runner.key import point_key
+from harness.runner.servers import mesh_of
+from harness.vocabulary import OWN_BACKEND
+
+# s for the atlas of an experiment within a sweep; `harness compare` takes as long as it takes.
+SWEPT_SECONDS = 170.0
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """An atlas, and the smallest scene of every case of it.
+
+    Parameters
+    ----------
+    found : as of a comparison: cases, failures, what was left out
+    rows : of its cases
+    scripts : by place of a case, the Python file that shows it, if there is one
+    case_of : by place of a cell, the place of its case
+    """
+
+    experiment: Experiment
+    atlas: Atlas
+    found: Comparison
+    rows: list[Reduced]
+    scripts: dict[int, str]
+    case_of: dict[int, int]
+
+    def cells(self) -> list[dict[str, Any]]:
+        """What `--json` and the database have of every cell."""
+        return [cell_row(cell) | {"case": self.case_of.get(place)} for place, cell in enumerate(self.atlas.cells)]
+
+    def documents(self) -> Iterator[tuple[tuple[str, str], dict[str, Any]]]:
+        """What the database keeps of each engine."""
+        for engine in dict.fromkeys(cell.engine for cell in self.atlas.cells):
+            mine = [place for place, row in enumerate(self.rows) if row.case.wrong == engine]
+            found = Comparison(
+                cases=[self.rows[place].case for place in mine],
+                failures=[failure for failure in self.found.failures if failure.backend == engine],
+                unsupported=[line for line in self.found.unsupported if line.startswith(f"{engine} ")],
+                left_out=self.found.left_out,
+            )
+            rows = [self.rows[place] for place in mine]
+            cells = [cell for cell in self.cells() if cell["engine"] == engine]
+            for cell in cells:
+                cell["case"] = mine.index(cell["case"]) if cell["case"] is not None else None
+            shown = [
+                shown_case(row) | {"script": self.scripts.get(place)} for place, row in zip(mine, rows, strict=True)
+            ]
+            yield (
+                (engine, JUDGE),
+                document(found, rows, {})
+                | {
+                    "title": self.experiment.title,
+                    "shown": shown,
+                    "versions": package_versions(packages()),
+                    "atlas": cells,
+                },
+            )
+
+
+def engines(chosen: Sequence[str] = ()) -> tuple[str, ...]:
+    """The engines of an atlas: those chosen, else all that are installed, and the grid of this program."""
+    return tuple(chosen) or (*(name for name in declared() if missing(name) is None), f"{OWN_BACKEND}/grid")
+
+
+def surveyed(
+    experiment: Experiment,
+    meshes: Meshes,
+    names: Sequence[str],
+    budget: Budget,
+    progress: Callable[[str], None] = lambda line: None,
+) -> Surveyed:
+    """Ask every engine about every family, shape and mesh of an experiment; then make its cases smaller."""
+    atlas = Atlas()
+    wanted = {(point.scene.shape, point.scene.mesh): point for point in experiment.points}
+    for (shape, _), point in wanted.items():
+        mesh = mesh_of(experiment, point, meshes)
+        measure = experiment.measure
+        atlas.add(survey(shape, mesh, measure.families, measure.family_poses, names, budget, progress))
+    found = Comparison(
+        cases=list(atlas.cases.values()),
+        failures=atlas.failures,
+        unsupported=atlas.unsupported,
+        left_out=list(budget.left_out),
+    )
+    file_of = {id(mesh): path.name for path, mesh in meshes.items()}
+    known: Known = {}
+    rows = reduced(found, file_of, len(found.cases), known)
+    scripts = {
+        place: text
+        for place, row in enumerate(rows)
+        if row.small is not None and (text := script_of(row.small)) is not None
+    }
+    return Surveyed(experiment, atlas, found, rows, scripts, {cell: place for place, cell in enumerate(atlas.cases)})
+
+
+def survey_key(experiment: Experiment, meshes: Meshes, name: str) -> str:
+    """Of two surveys of an engine with the same key the second would find nothing new."""
+    points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
+    measure = experiment.measure
+    content = json.dumps([points, name, measure.families, measure.family_poses, package_versions(packages())])
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+def cell_row(cell: Cell) -> dict[str, Any]:
+    """A cell, with its rate and the interval of that; None without verdicts."""
+    rate, low, high = cell.per_million if cell.verdicts else (None, None, None)
+    return asdict(cell) | {"per_million": rate, "low": low, "high": high}
+
+
+def cell_text(cell: Cell) -> str:
+    """A cell in a line."""
+    seen = f"{cell.family}, {cell.shape}{f' of {cell.mesh}' if cell.mesh else ''}"
+    if not cell.verdicts:
+        return f"{cell.engine}: {seen}: no verdict"
+    rate, low, high = cell.per_million
+    wrong = (
+        f"{cell.wrong} wrong, {rate:.3g} in a million [{low:.3g}, {high:.3g}], {cell.beyond} of them beyond its "
+        f"tolerance, the farthest {cell.deepest:.3g} of a size from touching"
+        if cell.wrong
+        else f"none wrong, at most {high:.3g} in a million"
+    )
+    return f"{cell.engine}: {seen}: {cell.verdicts} verdicts, {wrong}; {1e6 * cell.seconds:.3g} µs each"

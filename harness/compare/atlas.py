@@ -1,0 +1,250 @@
+"""The atlas of correctness: every engine on families of poses, each verdict held against exact arithmetic.
+
+A comparison holds two engines against each other and judges where they differ. Here the judge decides every pose, so
+that an error that all engines share counts as well, and rates of wrong verdicts can be told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy import stats
+
+from harness.compare.budget import Budget
+from harness.compare.comparison import MOST_FAILURES
+from harness.compare.families import family_poses
+from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError, preload
+from harness.compare.outcome import Case, Failure
+from harness.compare.pair_audit import band
+from harness.compare.poses import Pose
+from harness.compare.tally import NamePair
+from harness.compare.truths import Truths
+from harness.scene.mesh import Mesh
+from harness.scene.scene import Scene
+from harness.vocabulary import Shape
+
+JUDGE = "exact arithmetic"
+"""The name under which the judge stands beside an engine."""
+_BODIES = (0, 1)
+_CONFIDENCE = 0.95
+_TIMED = 50
+"""Poses of every scene whose queries are timed."""
+
+
+@dataclass
+class Cell:
+    """One engine on one family of poses of one shape.
+
+    Parameters
+    ----------
+    engine, family, shape, mesh : names; mesh is empty for spheres
+    verdicts : that were given
+    wrong : of those, how many exact arithmetic contradicts
+    beyond : of the wrong, how many lie farther from touching than the tolerance that the engine declares
+    deepest : the largest gap or overlap of a wrong verdict, of the size of the smaller body; 0 without any
+    seconds : CPU time of a query, the median of the sizes and places of the family; 0 where it was not measured
+    failures : poses at which it crashed, hung or raised
+    """
+
+    engine: str
+    family: str
+    shape: str
+    mesh: str
+    verdicts: int = 0
+    wrong: int = 0
+    beyond: int = 0
+    deepest: float = 0.0
+    seconds: float = 0.0
+    failures: int = 0
+
+    @property
+    def per_million(self) -> tuple[float, float, float]:
+        """Wrong verdicts in a million, and the interval of Clopper and Pearson that holds the rate in 95 %."""
+        if not self.verdicts:
+            return float("nan"), float("nan"), float("nan")
+        found = stats.binomtest(self.wrong, self.verdicts).proportion_ci(_CONFIDENCE, method="exact")
+        return 1e6 * self.wrong / self.verdicts, 1e6 * float(found.low), 1e6 * float(found.high)
+
+
+@dataclass
+class Atlas:
+    """What was found of every engine.
+
+    Parameters
+    ----------
+    cells : in the order in which they were asked
+    cases : of each cell that has one, the farthest wrong verdict beyond the declared tolerance, by place in `cells`
+    failures : poses at which an engine crashed, hung or raised
+    unsupported : what could not be asked, and why
+    """
+
+    cells: list[Cell] = field(default_factory=list)
+    cases: dict[int, Case] = field(default_factory=dict)
+    failures: list[Failure] = field(default_factory=list)
+    unsupported: list[str] = field(default_factory=list)
+
+    def add(self, other: Atlas) -> None:
+        """Take in the atlas of another shape or mesh."""
+        before = len(self.cells)
+        self.cells += other.cells
+        self.cases |= {before + place: case for place, case in other.cases.items()}
+        self.failures += other.failures
+        self.unsupported += [line for line in other.unsupported if line not in self.unsupported]
+
+
+def survey(
+    shape: Shape,
+    mesh: Mesh | None,
+    families: Sequence[str],
+    count: int,
+    names: Sequence[str],
+    budget: Budget,
+    progress: Callable[[str], None] = lambda line: None,
+    timeout: float = ANSWER_SECONDS,
+) -> Atlas:
+    """Ask engines about every pose of some families, and judge every answer.
+
+    Parameters
+    ----------
+    shape, mesh : of the bodies; no mesh for spheres
+    families : as in `harness.vocabulary.FAMILIES`
+    count : poses of each
+    names : engines, or methods of this program
+    budget : ends it early, and keeps what was left out
+    progress : told what is being done
+    timeout : s for an answer
+    """
+    atlas = Atlas()
+    for name in names:
+        preload(name)
+    for family in families:
+        what = f"{family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
+        if budget.spent:
+            budget.left_out.append(f"{what}: not asked, {budget.seconds:g} s were spent")
+            continue
+        progress(f"{what}: {count} poses")
+        _Survey(atlas, family, shape, mesh, names, budget, timeout).ask(count)
+    return atlas
+
+
+class _Survey:
+    """One family put to all engines."""
+
+    def __init__(
+        self,
+        atlas: Atlas,
+        family: str,
+        shape: Shape,
+        mesh: Mesh | None,
+        names: Sequence[str],
+        budget: Budget,
+        timeout: float,
+    ) -> None:
+        self._atlas, self._family, self._shape, self._mesh = atlas, family, shape, mesh
+        self._names, self._budget, self._timeout = names, budget, timeout
+        self._places: dict[str, int] = {}
+        self._seconds: dict[str, list[float]] = {}
+
+    def ask(self, count: int) -> None:
+        """Every engine about every pose."""
+        for pose_set in family_poses(self._family, self._shape, self._mesh, count):
+            with ExitStack() as processes:
+                asked = self._loaded(pose_set.scene, processes)
+                # an engine that rounds its hulls is asked about poses of those, and judged by them
+                held = {name: replace(pose_set.scene, hulls=one.facts.hulls) for name, one in asked.items()}
+                whole = pose_set.poses(pose_set.scene)
+                poses = {name: pose_set.poses(held[name]) if one.facts.hulls else whole for name, one in asked.items()}
+                for place in range(0, len(whole), self._budget.every):
+                    if self._budget.spent:
+                        self._budget.left_out.append(
+                            f"{self._family}, {self._shape}: {len(whole) - place} of {len(whole)} poses not asked, "
+                            f"{self._budget.seconds:g} s were spent"
+                        )
+                        break
+                    self._ask_at(place, asked, held, poses)
+                for name, one in asked.items():
+                    # of the first ones: they were all answered, so that nothing is left to be set up
+                    seconds = one.seconds_a_query(poses[name][:_TIMED]) if not self._cell(name).failures else None
+                    if seconds is not None:
+                        self._seconds.setdefault(name, []).append(seconds)
+        for name, measured in self._seconds.items():
+            self._cell(name).seconds = float(np.median(measured))
+
+    def _loaded(self, scene: Scene, processes: ExitStack) -> dict[str, Isolated]:
+        asked = {}
+        for name in self._names:
+            try:
+                one = processes.enter_context(Isolated(name, scene, self._timeout))
+            except UnusableError as error:
+                self._say(f"{name} cannot be asked about shape {self._shape}: {error}")
+                continue
+            if one.facts.approximated is not None:
+                self._say(f"{one.facts.approximated}; it is judged on hulls")
+                continue
+            asked[name] = one
+        return asked
+
+    def _say(self, line: str) -> None:
+        if line not in self._atlas.unsupported:
+            self._atlas.unsupported.append(line)
+
+    def _cell(self, name: str) -> Cell:
+        if name not in self._places:
+            self._places[name] = len(self._atlas.cells)
+            mesh = self._mesh.name if self._mesh is not None and self._shape != "sphere" else ""
+            self._atlas.cells.append(Cell(name, self._family, self._shape, mesh))
+        return self._atlas.cells[self._places[name]]
+
+    def _ask_at(
+        self, place: int, asked: dict[str, Isolated], held: dict[str, Scene], poses: dict[str, Sequence[Pose]]
+    ) -> None:
+        shared: Truths | None = None
+        right, wrong = [], []
+        for name, one in asked.items():
+            cell, pose = self._cell(name), poses[name][place]
+            if cell.failures >= MOST_FAILURES:
+                continue
+            answer = one.pairs(pose)
+            if isinstance(answer, str):
+                self._failed(cell, pose, place, answer)
+                continue
+            if one.facts.hulls:
+                truths = Truths(held[name], pose)
+            else:
+                truths = shared = shared or Truths(held[name], pose)
+            cell.verdicts += 1
+            said = bool(len(answer))
+            solid = one.facts.solid and said
+            if truths.touch(_BODIES) == said or (solid and truths.judgement(_BODIES).contained):
+                right.append(name)
+            else:
+                wrong.append((name, truths))
+        for name, truths in wrong:
+            partner = next(iter(right), next((other for other in asked if other != name), JUDGE))
+            self._count(name, asked[name], truths, held[name], place, (name, partner))
+
+    def _count(self, name: str, one: Isolated, truths: Truths, scene: Scene, place: int, names: NamePair) -> None:
+        """A wrong verdict."""
+        cell, truth, sizes = self._cell(name), truths.judgement(_BODIES), scene.bodies.sizes
+        gap = abs(truth.gap) / float(sizes.min())
+        cell.wrong += 1
+        cell.deepest = max(cell.deepest, gap)
+        tolerance = one.facts.hulls_tolerance if one.facts.hulls else one.facts.tolerance
+        if abs(truth.gap) <= band(scene, tolerance, truths.pose, _BODIES):
+            return
+        cell.beyond += 1
+        known = self._atlas.cases.get(self._places[name])
+        if known is None or gap > abs(known.judgement.gap) / float(known.scene.bodies.sizes.min()):
+            self._atlas.cases[self._places[name]] = Case(
+                names, name, _BODIES, truth, scene=scene, pose=truths.pose, query_index=place + 1
+            )
+
+    def _failed(self, cell: Cell, pose: Pose, place: int, reason: str) -> None:
+        cell.failures += 1
+        pair = (cell.engine, JUDGE)
+        self._atlas.failures.append(Failure(pair, cell.engine, f"{self._family}: {pose.name}", place + 1, reason))
+        if cell.failures >= MOST_FAILURES:
+            self._say(f"{cell.engine} failed at {MOST_FAILURES} poses of {self._family}; the others are not asked")

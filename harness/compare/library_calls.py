@@ -1,0 +1,140 @@
+"""How each library is asked about two bodies, in a few lines of Python that need nothing else: for reproductions.
+
+The names `A`, `FACES_A`, `P`, `Q` and `B`, `FACES_B`, `R`, `S` are the bodies' vertices, triangles, positions and
+quaternions w x y z. A backend without an entry has no reproductions of its own; its experiments show the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from harness.arrays import Floats
+from harness.narrowphase.units import unit_of, unit_of_smallest
+from harness.vocabulary import Shape
+
+
+@dataclass(frozen=True)
+class Call:
+    """A library.
+
+    Parameters
+    ----------
+    library : its name as a package
+    version : an expression for its version
+    imports : lines
+    ask : the body of a function that returns whether the two touch
+    unit : m, the length that is told of as 1, for bodies of these sizes (m)
+    """
+
+    library: str
+    version: str
+    imports: str
+    ask: str
+    unit: Callable[[Floats], float]
+
+
+_PACKAGE = "version({!r})"
+_VERSION = "from importlib.metadata import version\n"
+
+_FCL_HULL = """
+def body(vertices, faces, position, quaternion):
+    counted = np.column_stack([np.full(len(faces), 3), faces]).ravel()
+    return fcl.CollisionObject(fcl.Convex(vertices, len(faces), counted), fcl.Transform(quaternion, position))
+
+return fcl.collide(body(A, FACES_A, P, Q), body(B, FACES_B, R, S)) > 0
+"""
+_FCL_MESH = """
+def body(vertices, faces, position, quaternion):
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    return fcl.CollisionObject(model, fcl.Transform(quaternion, position))
+
+return fcl.collide(body(A, FACES_A, P, Q), body(B, FACES_B, R, S)) > 0
+"""
+_COAL = """
+def body(vertices, faces, position, quaternion):
+    points, triangles = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    for vertex in vertices:
+        points.append(vertex)
+    for face in faces.tolist():
+        triangles.append(coal.Triangle(*face))
+{make}
+    turned = coal.Quaternion(*quaternion).toRotationMatrix()
+    return coal.CollisionObject(shape, coal.Transform3s(turned, np.array(position)))
+
+request = coal.CollisionRequest()
+request.gjk_tolerance = 1e-12
+return bool(coal.collide(body(A, FACES_A, P, Q), body(B, FACES_B, R, S), request, coal.CollisionResult()))
+"""
+_COAL_HULL = "    shape = coal.Convex(points, triangles)"
+_COAL_MESH = """    shape = coal.BVHModelOBBRSS()
+    shape.beginModel(len(faces), len(vertices))
+    shape.addSubModel(points, triangles)
+    shape.endModel()"""
+_MUJOCO = """
+spec = mujoco.MjSpec()
+spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-12, 200
+for name, vertices in (("a", A), ("b", B)):
+    body = spec.worldbody.add_body()
+    body.add_freejoint()
+    spec.add_mesh(name=name, uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=1.0)
+model = spec.compile()
+data = mujoco.MjData(model)
+data.qpos[:] = [*P, *Q, *R, *S]
+mujoco.mj_kinematics(model, data)
+mujoco.mj_collision(model, data)
+return data.ncon > 0
+"""
+_PYBULLET = """
+pybullet.connect(pybullet.DIRECT)
+bodies = []
+for vertices, place, (w, x, y, z) in ((A, P, Q), (B, R, S)):
+    shape = pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=vertices.tolist())
+    bodies.append(pybullet.createMultiBody(1.0, shape, basePosition=place, baseOrientation=[x, y, z, w]))
+pybullet.performCollisionDetection()
+# the margin of 0.001 inflates each hull
+return any(contact[8] + 0.002 <= 0 for contact in pybullet.getContactPoints(*bodies))
+"""
+_TRIMESH = """
+manager = trimesh.collision.CollisionManager()
+for name, vertices, faces, place, (w, x, y, z) in (("a", A, FACES_A, P, Q), ("b", B, FACES_B, R, S)):
+    pose = trimesh.transformations.quaternion_matrix([w, x, y, z])
+    pose[:3, 3] = place
+    manager.add_object(name, trimesh.Trimesh(vertices, faces, process=False), pose)
+return bool(manager.in_collision_internal())
+"""
+
+
+def _smallest_32(sizes: Floats) -> float:
+    return unit_of_smallest(sizes) / 32.0
+
+
+def _fcl(ask: str) -> Call:
+    return Call("python-fcl", _PACKAGE.format("python-fcl"), f"{_VERSION}import fcl", ask, _smallest_32)
+
+
+def _coal(make: str) -> Call:
+    return Call("coal", "coal.__version__", "import coal", _COAL.format(make=make), unit_of)
+
+
+def _trimesh() -> Call:
+    return Call("trimesh", "trimesh.__version__", "import trimesh", _TRIMESH, _smallest_32)
+
+
+CALLS: dict[tuple[str, Shape], Call] = {
+    ("fcl", "hull"): _fcl(_FCL_HULL),
+    ("fcl", "mesh"): _fcl(_FCL_MESH),
+    ("coal", "hull"): _coal(_COAL_HULL),
+    ("coal", "mesh"): _coal(_COAL_MESH),
+    ("trimesh", "hull"): _trimesh(),
+    ("trimesh", "mesh"): _trimesh(),
+    ("mujoco", "hull"): Call("mujoco", "mujoco.__version__", "import mujoco", _MUJOCO, unit_of),
+    ("pybullet", "hull"): Call(
+        "pybullet", _PACKAGE.format("pybullet"), f"{_VERSION}import pybullet", _PYBULLET, unit_of_smallest
+    ),
+}
+"""By backend and shape."""

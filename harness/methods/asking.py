@@ -1,0 +1,241 @@
+"""Runs that ask more than whether pairs touch: frame after frame, in a motion that no answer changes.
+
+Bodies pass through each other and only the box reflects them, so that a frame is its poses and the answer to them, or
+what happens on the way from the last frame to it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from harness.arrays import Flags, Pairs
+from harness.measure.clocks import Clock
+from harness.measure.conservation import energy
+from harness.methods.impact_times import FrameMotion, ImpactFinder
+from harness.methods.near_pairs import NearFinder
+from harness.methods.observer import Folds, Observer, Onsets
+from harness.methods.stages import Plan
+from harness.methods.step_metrics import PHASES, clock_metrics, rates
+from harness.motion.answers import NearLog
+from harness.motion.course import folded_course
+from harness.motion.finite import require_finite_state
+from harness.motion.hits import Outcome, Trace
+from harness.motion.kinematics import Trajectory
+from harness.motion.law import MotionLaw
+from harness.scene.scene import Scene
+
+
+@dataclass
+class _Flight:
+    """What a flight moves and is observed by.
+
+    Attributes
+    ----------
+    near : pairs that were near, over all frames asked about
+    log : of the answers of every frame, if they are kept
+    """
+
+    law: MotionLaw
+    trajectory: Trajectory
+    clock: Clock
+    observer: Observer
+    folds: Folds
+    onsets: Onsets
+    near: int = 0
+    log: NearLog | None = None
+
+
+class Asking(ABC):
+    """The plan of a run with a query, assembled: frames at k dt, k = 1 … frames.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan of this scene
+    """
+
+    def __init__(self, scene: Scene, plan: Plan) -> None:
+        self._scene, self._plan = scene, plan
+
+    @abstractmethod
+    def begin(self, flight: _Flight) -> None:
+        """Get ready for a flight."""
+
+    @abstractmethod
+    def frame(self, flight: _Flight, number: int) -> None:
+        """Ask a frame, within the clock, and observe what it answers, outside of it."""
+
+    @property
+    @abstractmethod
+    def counters(self) -> Mapping[str, float]:
+        """What was counted over all frames that were asked."""
+
+    @abstractmethod
+    def found(self, flight: _Flight, times: float) -> dict[str, float]:
+        """What was found over all frames, each of those asked standing for so many."""
+
+    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+        """Fly the scene once, from its start; documented as `harness.methods.method.Pipeline.fly`."""
+        scene, plan = self._scene, self._plan
+        trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=plan.keeps("orientations"))
+        observer = Observer(scene, trajectory, penetration=False, traced=traced)
+        flight = _Flight(
+            law,
+            trajectory,
+            Clock(*PHASES),
+            observer,
+            Folds(trajectory),
+            Onsets(len(scene.bodies)),
+            log=self._log(traced),
+        )
+        self.begin(flight)
+        # bodies at rest give the same answer in every frame, which is asked for once
+        asked = law.frames if plan.keeps("motion") else min(1, law.frames)
+        times = law.frames / asked if asked else 0.0
+        for number in range(1, asked + 1):
+            self.frame(flight, number)
+        end = law.frames * law.dt
+        require_finite_state(trajectory.positions, trajectory.velocities, end)
+        counted: dict[str, float] = {
+            "frames": law.frames,
+            **{name: times * count for name, count in self.counters.items()},
+            "box_tests": 0,
+            "box_hits": observer.wall_hits,
+            **self.found(flight, times),
+        }
+        metrics = {
+            **counted,
+            **rates(counted, len(scene.bodies), law.frames, end),
+            **clock_metrics(flight.clock, law.frames, end),
+            "energy_drift": observer.conservation.energy_drift,
+            "escaped": float(observer.escaped),
+            "event_digest": observer.digest.value,
+        }
+        trace = _trace(scene, flight, end, counted) if traced else None
+        course = folded_course(scene.bodies, scene.box, end) if plan.keeps("recording") else None
+        return Outcome(metrics, trace, course, flight.log.answers() if flight.log is not None else None)
+
+    def _log(self, traced: bool) -> NearLog | None:
+        return None
+
+
+class NearAsking(Asking):
+    """Asks which pairs are near in every frame, and how far apart they are.
+
+    Parameters
+    ----------
+    scene, plan : as for `Asking`
+    finder : loaded with the scene; None where the plan leaves pairs out
+    gaps : whether it is asked how far apart they are; else what a finder may say of it has no meaning
+    """
+
+    def __init__(self, scene: Scene, plan: Plan, finder: NearFinder | None, *, gaps: bool) -> None:
+        super().__init__(scene, plan)
+        self._finder, self._gaps = finder, gaps
+
+    @property
+    def counters(self) -> Mapping[str, float]:
+        return _NOTHING if self._finder is None else self._finder.counters
+
+    def begin(self, flight: _Flight) -> None:
+        """There is nothing to get ready."""
+
+    def frame(self, flight: _Flight, number: int) -> None:
+        time, trajectory, finder = number * flight.law.dt, flight.trajectory, self._finder
+        flight.clock.start()
+        trajectory.move_to(time)
+        if finder is None:
+            flight.clock.lap("pair_seconds")
+            flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            return
+        found = finder.near(trajectory.positions, trajectory.quaternions)
+        flight.clock.lap("pair_seconds")
+        pairs, gaps, points = finder.checked(found)
+        flight.near += len(pairs)
+        if flight.log is not None:
+            flight.log.add(number, pairs, *((gaps, points) if self._gaps else (None, None)))
+        flight.observer.frame(time, pairs, flight.onsets.of(pairs), flight.folds.by(time))
+
+    def found(self, flight: _Flight, times: float) -> dict[str, float]:
+        return {"near_pairs": times * flight.near, "events": flight.observer.wall_hits}
+
+    def _log(self, traced: bool) -> NearLog | None:
+        return NearLog() if traced else None
+
+
+class ImpactAsking(Asking):
+    """Asks which pairs begin to touch between one frame and the next, and when.
+
+    Parameters
+    ----------
+    scene, plan : as for `Asking`
+    finder : loaded with the scene; None where the plan leaves pairs out
+    """
+
+    def __init__(self, scene: Scene, plan: Plan, finder: ImpactFinder | None) -> None:
+        super().__init__(scene, plan)
+        self._finder = finder
+        self._middle = Trajectory(scene.bodies, scene.box, folded=True, turning=False)
+
+    @property
+    def counters(self) -> Mapping[str, float]:
+        return _NOTHING if self._finder is None else self._finder.counters
+
+    def begin(self, flight: _Flight) -> None:
+        if self._finder is not None:
+            self._finder.begin(flight.law.dt)
+
+    def frame(self, flight: _Flight, number: int) -> None:
+        time, dt, start = number * flight.law.dt, flight.law.dt, (number - 1) * flight.law.dt
+        trajectory, finder = flight.trajectory, self._finder
+        flight.clock.start()
+        trajectory.move_to(start)
+        if finder is None:
+            flight.clock.lap("pair_seconds")
+            flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            return
+        self._middle.move_to(start + 0.5 * dt)
+        motion = FrameMotion(
+            trajectory.positions,
+            trajectory.quaternions,
+            self._middle.positions,
+            trajectory.velocities_at(start),
+            self._scene.bodies.spins,
+            number == 1,
+        )
+        found = finder.impacts(motion)
+        flight.clock.lap("pair_seconds")
+        pairs, times = finder.checked(found)
+        order = np.argsort(times, kind="stable")
+        hits = np.ones(len(pairs), np.bool_)
+        flight.observer.frame(time, pairs[order], hits, flight.folds.by(time), start + times[order])
+
+    def found(self, flight: _Flight, times: float) -> dict[str, float]:
+        hits, walls = flight.observer.pair_hits, flight.observer.wall_hits
+        return {"pair_hits": hits, "events": hits + walls}
+
+
+_NOTHING: Mapping[str, float] = {"pair_tests": 0, "narrow_tests": 0}
+_NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
+_NO_FLAGS: Flags = np.empty(0, np.bool_)
+
+
+def _trace(scene: Scene, flight: _Flight, end: float, counted: Mapping[str, float]) -> Trace | None:
+    log, trajectory = flight.observer.log, flight.trajectory
+    if log is None:
+        return None
+    trajectory.move_to(end)
+    velocities = trajectory.velocities_at(end)
+    return Trace(
+        *log.arrays(),
+        time=end,
+        positions=trajectory.positions.copy(),
+        velocities=velocities,
+        energy=energy(velocities, scene.bodies.masses),
+        counters=counted,
+        near=flight.log is not None,
+    )

@@ -1,0 +1,146 @@
+"""Pairs that begin to touch from one frame to the next, and when: a broad phase of moving spheres, then kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from harness.arrays import Floats, Ints
+from harness.backends.protocol import ImpactTimes
+from harness.broadphase.pairs import BroadPhase
+from harness.methods.narrow_phase import hull_of_size_1
+from harness.narrowphase.frame_flights import FrameFlights
+from harness.narrowphase.gjk import MARGIN
+from harness.narrowphase.impact_pairs import (
+    Count,
+    Onsets,
+    PairsAsked,
+    hull_pair_onsets,
+    mesh_pair_onsets,
+    onsets_of,
+    sphere_pair_onsets,
+)
+from harness.narrowphase.mesh_advancement import mesh_shape
+from harness.narrowphase.support import support_map
+from harness.scene.scene import Scene
+
+# Relative: by how much more than their way spheres are grown, so that rounding loses no pair.
+SLACK = 1e-9
+# Of the sum of two sizes: the gap at which searches take bodies for touching, at the least.
+LEAST_GAP = 8.0 * MARGIN
+
+
+class FrameMotion(NamedTuple):
+    """How the bodies of a scene move from one frame to the next.
+
+    Attributes
+    ----------
+    positions, quaternions : (n, 3) m and (n, 4), at the start
+    middle : (n, 3) m, where the centres are in the middle
+    velocities, spins : (n, 3) m/s and rad/s, at the start
+    first : whether it is the first frame
+    """
+
+    positions: Floats
+    quaternions: Floats
+    middle: Floats
+    velocities: Floats
+    spins: Floats
+    first: bool
+
+
+class ImpactFinder(Protocol):
+    """Finds the pairs of a scene that begin to touch, frame after frame, each as long as the last."""
+
+    @property
+    def counters(self) -> Mapping[str, float]:
+        """What was counted over all frames, if anything is."""
+
+    def begin(self, duration: float) -> None:
+        """Begin anew, with frames of a duration, s."""
+
+    def impacts(self, motion: FrameMotion) -> ImpactTimes:
+        """Pairs that begin to touch in the next frame, and when; a pair may stand there more than once."""
+
+    def checked(self, found: ImpactTimes) -> ImpactTimes:
+        """The answer, if it keeps to its form; asked outside of every clock."""
+
+
+class KernelImpacts:
+    """Impacts by kernels.
+
+    Parameters
+    ----------
+    scene : Scene
+    broad_phase : makes one for spheres of these radii (n,) m
+    tolerance : of the mean size of a pair, the gap at which hulls and surfaces count as touching
+    """
+
+    def __init__(self, scene: Scene, broad_phase: Callable[[Floats], BroadPhase], tolerance: float) -> None:
+        self._scene, self._make, self._tolerance = scene, broad_phase, tolerance
+        self._room = scene.box.half - scene.bodies.radii[:, None]
+        self._speeds = np.linalg.norm(scene.bodies.velocities, axis=1)
+        self._search, self._reach = _search_of(scene)
+        self._tests = self._given_up = 0
+        self._spheres = scene.shape == "sphere"
+
+    @property
+    def counters(self) -> dict[str, float]:
+        tests: dict[str, float] = {"pair_tests": self._broad_phase.pair_tests, "narrow_tests": self._tests}
+        return tests if self._spheres else {**tests, "unfollowed_contacts": self._given_up}
+
+    def begin(self, duration: float) -> None:
+        self._duration, self._tests, self._given_up = duration, 0, 0
+        self._touching: Ints = np.empty(0, np.int64)
+        sizes = self._scene.bodies.sizes
+        # a folded path is never farther from its middle than its speed allows
+        way = 0.5 * duration * self._speeds
+        near = max(self._tolerance, 2.0 * LEAST_GAP) * sizes
+        self._broad_phase = self._make((self._scene.enclosing_radii + way + near) * (1.0 + SLACK))
+        self._found = onsets_of(0, 64)
+
+    def impacts(self, motion: FrameMotion) -> ImpactTimes:
+        close = self._broad_phase.close_pairs(motion.middle)
+        self._tests += len(close)
+        flights = FrameFlights(
+            motion.positions,
+            motion.quaternions,
+            motion.velocities,
+            motion.spins,
+            self._room,
+            self._scene.bodies.sizes,
+            self._reach,
+            self._duration,
+        )
+        asked = PairsAsked(close, self._touching, motion.first, self._tolerance)
+        found = Onsets(self._found.pairs, self._found.times, np.empty(len(close), np.bool_))
+        count = self._search(asked, flights, found)
+        if count.onsets > len(found.pairs):  # count first, then make room: rare, as the room is kept
+            found = self._found = onsets_of(len(close), 2 * count.onsets)
+            count = self._search(asked, flights, found)
+        self._given_up += count.given_up
+        still = close[found.touching]
+        self._touching = still[:, 0] << 32 | still[:, 1]
+        return ImpactTimes(close[found.pairs[: count.onsets]], found.times[: count.onsets].copy())
+
+    def checked(self, found: ImpactTimes) -> ImpactTimes:
+        return found
+
+
+class _Search(Protocol):
+    def __call__(self, asked: PairsAsked, flights: FrameFlights, found: Onsets) -> Count:
+        """Search a frame."""
+
+
+def _search_of(scene: Scene) -> tuple[_Search, float]:
+    """What searches a frame of the bodies of a scene, and how far they reach from their centres, of size."""
+    if scene.shape == "sphere" or scene.mesh is None:
+        return sphere_pair_onsets, 0.5
+    if scene.shape == "hull":
+        vertices = hull_of_size_1(scene).vertices
+        hull, reach = support_map(vertices), float(np.linalg.norm(vertices, axis=1).max())
+        return lambda asked, flights, found: hull_pair_onsets(asked, flights, hull, found), reach
+    shape = mesh_shape(scene.mesh)
+    return lambda asked, flights, found: mesh_pair_onsets(asked, flights, shape, found), shape.radius

@@ -1,0 +1,263 @@
+"""When the pairs of a frame begin to touch: every onset from one frame to the next, of spheres, hulls or surfaces.
+
+A pair that touches at the start of a frame is followed until it parts, and one that does not is advanced to its next
+contact, by the same searches that event-driven motion uses. So times are exact however long the frame is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from harness.arrays import Flags, Floats, Ints, Pairs
+from harness.kernel import inner, kernel
+from harness.narrowphase.contact_end import ContactEnd, end_of_hull_contact, end_of_mesh_contact
+from harness.narrowphase.contact_intervals import Onset, next_mesh_contact
+from harness.narrowphase.frame_flights import (
+    FrameFlights,
+    flight_of_pair,
+    fold,
+    motion_in,
+    pair_flight,
+    until_fold,
+)
+from harness.narrowphase.free_flight import Motion
+from harness.narrowphase.mesh_advancement import MeshShape
+from harness.narrowphase.motion_impacts import near_impact
+from harness.narrowphase.spheres import passage
+from harness.narrowphase.support import SupportMap
+from harness.narrowphase.vectors import dot, minus
+from harness.narrowphase.verdicts import SearchVerdict
+
+Shape = TypeVar("Shape")
+
+# By how much the tolerance of a search that was given up is raised before it is done again, and how many are done.
+COARSER, MOST_SEARCHES = 10.0, 3
+
+
+class PairsAsked(NamedTuple):
+    """What is asked of a frame.
+
+    Attributes
+    ----------
+    pairs : (k, 2) int array, sorted: all that can touch
+    touching : (m,) int array, i << 32 | j, ascending: the pairs that touched at the end of the last frame
+    first : whether it is the first frame: a pair that touches at its start has not begun to in it
+    tolerance : of the mean size of a pair, the gap at which bodies count as touching; of no effect on spheres
+    """
+
+    pairs: Pairs
+    touching: Ints
+    first: bool
+    tolerance: float
+
+
+class Onsets(NamedTuple):
+    """What is found, written.
+
+    Attributes
+    ----------
+    pairs : (m,) int array, which of the pairs asked about began to touch; ascending
+    times : (m,) float array, s after the start of the frame
+    touching : (k,) bool array, whether a pair touches at the end of the frame
+    """
+
+    pairs: Ints
+    times: Floats
+    touching: Flags
+
+
+class Count(NamedTuple):
+    """How many onsets there are, which may be more than there is room for, and how many pairs were given up."""
+
+    onsets: int
+    given_up: int
+
+
+class Piece(NamedTuple):
+    """A straight piece of a pair's way: when it begins in the frame and how long it is, s; the gap that is touching, m.
+
+    `settled` says that a pair which touches at its start has begun to before.
+    """
+
+    begin: float
+    length: float
+    tolerance: float
+    settled: bool
+
+
+class Followed(NamedTuple):
+    """How a piece ended: whether the pair touches then, how many onsets there are so far, and whether it is known."""
+
+    touches: bool
+    onsets: int
+    known: bool
+
+
+@kernel
+def sphere_pair_onsets(asked: PairsAsked, flights: FrameFlights, found: Onsets) -> Count:
+    """All onsets of spheres."""
+    return pair_onsets(asked, flights, 0, found, spheres_in_piece)
+
+
+@kernel
+def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hull: SupportMap, found: Onsets) -> Count:
+    """All onsets of bodies that have the same hull."""
+    return pair_onsets(asked, flights, hull, found, hulls_in_piece)
+
+
+@kernel
+def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shape: MeshShape, found: Onsets) -> Count:
+    """All onsets of bodies that have the same surface."""
+    return pair_onsets(asked, flights, shape, found, surfaces_in_piece)
+
+
+@inner
+def pair_onsets(
+    asked: PairsAsked,
+    flights: FrameFlights,
+    shape: Shape,
+    found: Onsets,
+    in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+) -> Count:
+    """The onsets of all pairs, in order, given what follows a pair through a straight piece."""
+    count, given_up, place = 0, 0, 0
+    pair = pair_flight()
+    for k in range(len(asked.pairs)):
+        i, j = asked.pairs[k, 0], asked.pairs[k, 1]
+        key = i << 32 | j
+        while place < len(asked.touching) and asked.touching[place] < key:
+            place += 1
+        touches = place < len(asked.touching) and asked.touching[place] == key
+        flight_of_pair(flights, i, j, pair)
+        now = 0.0
+        followed = Followed(touches, count, True)
+        while True:
+            wait = min(until_fold(flights, i, j, pair), flights.duration - now)
+            a, b = motion_in(flights, i, pair, 0, now), motion_in(flights, j, pair, 1, now)
+            tolerance = asked.tolerance * 0.5 * (a.size + b.size)
+            piece = Piece(now, wait, tolerance, asked.first and now == 0.0)
+            followed = again_if_unknown(shape, a, b, piece, followed, k, found, in_piece)
+            given_up += not followed.known
+            if now + wait >= flights.duration:
+                break
+            fold(flights, i, j, pair, wait)
+            now += wait
+        count = followed.onsets
+        found.touching[k] = followed.touches
+    return Count(count, given_up)
+
+
+@inner
+def again_if_unknown(
+    shape: Shape,
+    a: Motion,
+    b: Motion,
+    piece: Piece,
+    before: Followed,
+    k: int,
+    found: Onsets,
+    in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+) -> Followed:
+    """A pair through a piece, and again at a larger tolerance where a search is given up.
+
+    One whose end is not known even then is taken to touch through the piece: coplanar faces that slide over each other
+    neither cross nor come apart.
+    """
+    after = Followed(before.touches, before.onsets, True)
+    for _ in range(MOST_SEARCHES):
+        after = in_piece(shape, a, b, piece, before, k, found)
+        if after.known:
+            break
+        piece = Piece(piece.begin, piece.length, COARSER * piece.tolerance, piece.settled)
+    return after
+
+
+@kernel
+def spheres_in_piece(
+    nothing: int, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+) -> Followed:
+    """Spheres touch once in a straight piece, from a root of a quadratic to the next."""
+    gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
+    met = passage(gap, drift, 0.5 * (a.size + b.size))
+    if not (met.enter <= piece.length and met.leave >= 0.0):
+        return Followed(False, before.onsets, True)
+    count = before.onsets
+    # what touches at the start has been noted, unless rounding has put its beginning off until now: then it approaches
+    begins = met.enter > 0.0 or (not piece.settled and dot(gap, drift) < 0.0)
+    if begins and not before.touches:
+        count = noted(found, count, k, piece.begin + max(met.enter, 0.0))
+    return Followed(met.leave >= piece.length, count, True)
+
+
+@kernel
+def hulls_in_piece(
+    hull: SupportMap, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+) -> Followed:
+    """Hulls, from contact to contact."""
+    return solids_in_piece(hull, a, b, piece, before, k, found, next_hull_contact, end_of_hull_contact)
+
+
+@kernel
+def surfaces_in_piece(
+    shape: MeshShape, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+) -> Followed:
+    """Surfaces, from contact to contact."""
+    return solids_in_piece(shape, a, b, piece, before, k, found, next_mesh_contact, end_of_mesh_contact)
+
+
+@kernel
+def next_hull_contact(
+    hull_a: SupportMap, hull_b: SupportMap, a: Motion, b: Motion, begin: float, end: float, tolerance: float
+) -> Onset:
+    """When two hulls touch, at the beginning of a window or later."""
+    found = near_impact(hull_a, hull_b, a, b, begin, end, tolerance)
+    return Onset(found.verdict, found.time)
+
+
+@inner
+def solids_in_piece(
+    shape: Shape,
+    a: Motion,
+    b: Motion,
+    piece: Piece,
+    before: Followed,
+    k: int,
+    found: Onsets,
+    next_contact: Callable[[Shape, Shape, Motion, Motion, float, float, float], Onset],
+    end_of_contact: Callable[[Shape, Shape, Motion, Motion, float, float, float], ContactEnd],
+) -> Followed:
+    """From contact to contact, given what finds the next one and what follows it to its end."""
+    now, touches, count, known = 0.0, before.touches, before.onsets, True
+    while known:
+        if touches:
+            ending = end_of_contact(shape, shape, a, b, now, piece.length, piece.tolerance)
+            known = ending.verdict != SearchVerdict.STALLED
+            if ending.verdict != SearchVerdict.FOUND:
+                break
+            now, touches = ending.time, False
+        onset = next_contact(shape, shape, a, b, now, piece.length, piece.tolerance)
+        known = onset.verdict != SearchVerdict.STALLED
+        if onset.verdict != SearchVerdict.FOUND:
+            break
+        if count > before.onsets or before.touches:
+            known = onset.time > now  # what touches again at once has not been seen to part
+        if known and not (piece.settled and onset.time == 0.0):
+            count = noted(found, count, k, piece.begin + onset.time)
+        now, touches = onset.time, True
+    return Followed(touches, count, known)
+
+
+@inner
+def noted(found: Onsets, count: int, k: int, time: float) -> int:
+    """Write an onset down, if there is room; how many there are."""
+    if count < len(found.pairs):
+        found.pairs[count], found.times[count] = k, time
+    return count + 1
+
+
+def onsets_of(pairs: int, room: int) -> Onsets:
+    """Unwritten, for so many pairs and onsets."""
+    return Onsets(np.empty(room, np.int64), np.empty(room), np.empty(pairs, np.bool_))

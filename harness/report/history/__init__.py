@@ -1,0 +1,1 @@
+"""How a metric went over all sweeps of a machine."""

@@ -1,0 +1,117 @@
+"""What a map says of each of its fields, in words: for a table, for the form beside the map and for a pointer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from harness.report.lines import interval_text
+from harness.report.map.fields import Field, MethodMap, method_of, resolution_of
+from harness.report.quantity import leaf_text, number, scale
+from harness.report.ranking import Ranked
+from harness.report.styles import style_of
+from harness.report.words import metric_title, metric_unit
+from harness.vocabulary import MethodName
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One field in words.
+
+    Parameters
+    ----------
+    x, y : as they are written
+    method, cost, sure, second : the fastest, what it costs, how sure that is, and the runner-up with its ratio
+    yaml : the lines of an experiment that choose it
+    href : the page of the experiment
+    """
+
+    where: MethodMap
+    field: Field
+    x: str
+    y: str
+    method: str
+    style: int | None
+    letter: str
+    cost: str
+    sure: str
+    second: str
+    yaml: str
+
+    @property
+    def sentence(self) -> str:
+        """All of it in a line, for a pointer over the field."""
+        parts = [f"{self.x}, {self.y}: {self.method}", self.cost, self.second, self.sure]
+        return "; ".join(part for part in parts if part)
+
+
+def answers(made: MethodMap) -> list[Answer]:
+    """Of every field of a map, row by row."""
+    fields = sorted(made.fields, key=lambda field: (field.y, field.x))
+    return [_answer(made, field) for field in fields]
+
+
+def place_text(leaf: str, value: Any) -> str:
+    """A value of a leaf as a person says it."""
+    if leaf == "count":
+        return f"{leaf_text(value)} bodies"
+    return f"{leaf} {leaf_text(value)}"
+
+
+def _answer(made: MethodMap, field: Field) -> Answer:
+    x, y = place_text(made.x_leaf, field.x), place_text(made.y_leaf, field.y)
+    best = field.best
+    if best is None:
+        return Answer(made, field, x, y, "nobody", None, "", "", field.doubt, "", "")
+    method = method_of(best.series)
+    return Answer(
+        made,
+        field,
+        x,
+        y,
+        method.label,
+        style_of(method),
+        made.letters[method],
+        _cost(made, best),
+        _sure(field),
+        _second(field),
+        _yaml(method, resolution_of(best.series)),
+    )
+
+
+def _cost(made: MethodMap, best: Ranked) -> str:
+    found = best.point.summary(made.metric)
+    if found is None:
+        return ""
+    unit = scale([found.median], metric_unit(made.metric))
+    text = f"{metric_title(made.metric)} {interval_text(found, unit)}"
+    duration = best.point.parameters.get("duration")
+    if made.metric == "run_seconds" and isinstance(duration, int | float):
+        text += f", for {leaf_text(duration)} s of motion"
+    return text
+
+
+def _sure(field: Field) -> str:
+    if field.doubt:
+        return f"in doubt: {field.doubt}"
+    if len(field.ranked) == 1:
+        return "the only one measured here that is right"
+    return f"told from all of the other {len(field.ranked) - 1}"
+
+
+def _second(field: Field) -> str:
+    second = field.runner_up
+    if second is None:
+        return ""
+    name = method_of(second.series).label
+    if second.ratio is None:
+        return f"then {name}"
+    kind = "range" if second.ratio.coverage is None else "interval"
+    interval = f" ({kind} {number(second.ratio.low)} to {number(second.ratio.high)})" if second.ratio.n > 1 else ""
+    return f"then {name}, {number(second.ratio.median)} times as much{interval}"
+
+
+def _yaml(method: MethodName, step: float) -> str:
+    query = f", query: {method.query}" if method.query != "collision" else ""
+    engine = f"engine: {{backend: {method.backend}, algorithm: {method.algorithm}{query}}}"
+    return engine if not method.stepped else f"{engine}\nmotion: {{dt: {leaf_text(step)}}}"

@@ -1,0 +1,59 @@
+"""The colour, the marker and the letter of a method: the same on all pages."""
+
+from __future__ import annotations
+
+import math
+
+from harness.report.drawing import palette
+from harness.vocabulary import ALGORITHMS, MethodName
+
+# The first places are for algorithms of this program, in the order of the vocabulary; then come backends' own. Events
+# stand apart from all that steps, in a colour of their own.
+_EVENTS = 3
+_BACKENDS = {name: place for place, name in enumerate(("fcl", "pybullet", "coal", "mujoco", "trimesh"), start=5)}
+_LATER = 10
+
+
+def style_of(method: MethodName) -> int:
+    """The number of a method's colour and marker.
+
+    >>> style_of(MethodName.read("fcl/grid", "hull")), style_of(MethodName.read("pybullet", "hull"))
+    (1, 6)
+    """
+    own = _own()
+    if method.algorithm not in own:
+        return _BACKENDS.get(method.backend, _LATER)
+    if not method.stepped:
+        return _EVENTS
+    place = own.index(method.algorithm)
+    place += place >= _EVENTS
+    return place if place < min(_BACKENDS.values()) else place + len(_BACKENDS)
+
+
+def same_colour(style: int) -> list[int]:
+    """Styles of the same colour with the other markers.
+
+    >>> same_colour(1)
+    [7, 13, 19]
+    """
+    colours, both = len(palette.LIGHT), math.lcm(len(palette.LIGHT), len(palette.MARKERS))
+    return [(style + step) % both for step in range(colours, both, colours)]
+
+
+def letter(method: MethodName) -> str:
+    """Its letter on a map: of an algorithm of this program one, of a backend's own detection its first two.
+
+    >>> letter(MethodName.read("fcl/grid", "hull")), letter(MethodName.read("pybullet", "hull"))
+    ('G', 'Py')
+    """
+    taken: dict[str, str] = {}
+    for name in _own():
+        taken[name] = next((mark for mark in name.upper() if mark.isalpha() and mark not in taken.values()), name)
+    return taken.get(method.algorithm, method.backend[:2].capitalize())
+
+
+def _own() -> list[str]:
+    """Algorithms of this program, those that step first."""
+    return sorted(
+        (name for name, word in ALGORITHMS.items() if word.own), key=lambda name: not ALGORITHMS[name].stepped
+    )

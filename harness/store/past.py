@@ -1,0 +1,63 @@
+"""A metric over all sweeps: every run ever made, not the newest alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from harness.store.connection import as_input_error
+from harness.store.history import reading
+
+
+@dataclass(frozen=True)
+class PastRun:
+    """A run that ended well, and its metric.
+
+    Parameters
+    ----------
+    machine : fingerprint of where it ran
+    sweep : number
+    experiment : that lists its point now, else one that lists the same parameters; "" where none does
+    timing_grade : whether its clocks may be compared with others
+    """
+
+    machine: str
+    sweep: int
+    experiment: str
+    parameters: Mapping[str, Any]
+    value: float
+    timing_grade: bool
+
+
+def past_runs(path: str | Path, metric: str) -> list[PastRun]:
+    """Every run that reports a metric, in the order in which they were made.
+
+    Raises
+    ------
+    InputError
+        The file is missing, empty, damaged, another program's, or of another schema version.
+    """
+    with reading(path) as connection, as_input_error(Path(path)):
+        points = {
+            number: (text, name)
+            for number, text, name in connection.execute(
+                "SELECT point.id, parameters, (SELECT min(name) FROM experiment_point "
+                "JOIN experiment ON experiment.id = experiment_point.experiment "
+                "WHERE experiment_point.point = point.id) FROM point"
+            )
+        }
+        rows = connection.execute(
+            "SELECT fingerprint, sweep, point, value, timing_grade FROM run JOIN machine ON machine.id = run.machine "
+            "JOIN metric ON metric.run = run.id WHERE status = 'ok' AND name = ? AND value IS NOT NULL ORDER BY run.id",
+            (metric,),
+        ).fetchall()
+    # another version of the program has measured the same parameters under another key
+    names = {text: name for text, name in points.values() if name is not None}
+    parameters = {text: json.loads(text) for text, _ in points.values()}
+    return [
+        PastRun(machine, sweep, names.get(points[point][0], ""), parameters[points[point][0]], value, bool(grade))
+        for machine, sweep, point, value, grade in rows
+    ]

@@ -1,0 +1,133 @@
+"""The atlas: families are what they say, every wrong verdict counts, and a reproduction stands by itself."""
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from harness.compare import families
+from harness.compare.atlas import Cell, survey
+from harness.compare.budget import Budget
+from harness.compare.families import family_poses
+from harness.compare.judge import judge
+from harness.compare.minimise import minimise
+from harness.compare.outcome import Case
+from harness.compare.script import LONGEST, reproduces, script_of
+from harness.vocabulary import FAMILIES
+from tests.compare.liars import install
+from tests.conftest import cube_mesh
+
+
+def poses(family, shape="hull", count=24):
+    return [
+        (pose_set.scene, pose)
+        for pose_set in family_poses(family, shape, cube_mesh(), count)
+        for pose in pose_set.poses(pose_set.scene)
+    ]
+
+
+def test_every_family_of_the_vocabulary_has_its_poses_and_as_many_as_asked():
+    assert families._FAMILIES.keys() == FAMILIES.keys()
+    for family in FAMILIES:
+        for shape in ("sphere", "hull", "mesh"):
+            assert len(poses(family, shape, 5)) == 5
+
+
+def test_poses_of_a_family_are_the_same_each_time():
+    for (_, pose), (_, again) in zip(poses("aligned"), poses("aligned"), strict=True):
+        assert np.array_equal(pose.positions, again.positions)
+        assert np.array_equal(pose.quaternions, again.quaternions)
+
+
+def test_a_contained_body_touches_as_a_hull_and_not_as_a_surface():
+    for shape, touching in (("hull", True), ("mesh", False)):
+        for scene, pose in poses("contained", shape, 6):
+            truth = judge(scene, 0, 1, pose.positions, pose.quaternions)
+            assert truth.touching == touching
+            assert truth.contained == (shape == "mesh")
+
+
+def test_grazing_poses_are_as_far_apart_as_they_say():
+    for scene, pose in poses("grazing"):
+        said = float(pose.name.rpartition(" ")[2])
+        gap = judge(scene, 0, 1, pose.positions, pose.quaternions).gap
+        # an overlap of edges may be less deep than along the normal that it was made by
+        assert gap == pytest.approx(said, abs=1e-15, rel=1e-9) or said < gap <= 0
+
+
+def test_a_rate_has_the_interval_of_clopper_and_pearson():
+    cell = Cell("a", "random", "hull", "m", verdicts=100, wrong=0)
+    rate, low, high = cell.per_million
+    assert (rate, low) == (0.0, 0.0)
+    assert high == pytest.approx(1e6 * (1 - 0.025 ** (1 / 100)))
+
+
+def test_an_engine_that_sees_no_overlap_is_wrong_about_all_of_them_and_fcl_about_none(tmp_path, monkeypatch):
+    name = install("blind", tmp_path / "plugins", monkeypatch)
+    found = survey("hull", cube_mesh(), ["deep", "contained"], 6, ["fcl", name], Budget())
+    wrong = {(cell.engine, cell.family): (cell.verdicts, cell.wrong, cell.beyond) for cell in found.cells}
+    assert wrong == {
+        ("fcl", "deep"): (6, 0, 0), (name, "deep"): (6, 6, 6),
+        ("fcl", "contained"): (6, 0, 0), (name, "contained"): (6, 6, 6),
+    }  # fmt: skip
+    assert {case.wrong for case in found.cases.values()} == {name}
+    assert all(cell.deepest > 0.1 for cell in found.cells if cell.engine == name)
+
+
+def test_one_that_misses_overlaps_along_a_vertex_direction_is_found_by_the_aligned_family(tmp_path, monkeypatch):
+    from tests.compare import liars
+
+    body = """
+        def pairs(self, positions, quaternions):
+            apart = positions[1] - positions[0]
+            along = np.sort(np.abs(apart))
+            found = super().pairs(positions, quaternions)
+            return found[:0] if along[2] - along[0] < 1e-6 * along[2] and along[2] > 0.1 else found
+    """
+    monkeypatch.setitem(liars.LIARS, "blind-along-vertices", body)
+    name = install("blind-along-vertices", tmp_path / "plugins", monkeypatch)
+    found = survey("hull", cube_mesh(), ["random", "aligned"], 120, ["fcl", name], Budget())
+    beyond = {cell.family: cell.beyond for cell in found.cells if cell.engine == name}
+    assert beyond["random"] == 0
+    assert beyond["aligned"] > 0
+
+
+def wrong_about(name):
+    """A case in which a library is said to be wrong; whether it is, the script finds out."""
+    scene, pose = poses("deep", count=1)[0]
+    scene = replace(scene, bodies=replace(scene.bodies, positions=pose.positions, quaternions=pose.quaternions))
+    truth = judge(scene, 0, 1, pose.positions, pose.quaternions)
+    return Case((name, "fcl"), name, (0, 1), truth, scene=scene, pose=pose, query_index=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["fcl", "pybullet", "mujoco", "trimesh", "coal"])
+def test_a_reproduction_asks_the_library_and_checks_its_proof_and_one_that_shows_nothing_is_not_written(name, tmp_path):
+    pytest.importorskip(name)
+    from harness.compare.library_calls import CALLS
+    from harness.compare.script import _written
+
+    case = wrong_about(name)
+    text = _written(case, CALLS[name, "hull"])
+    assert text.count("\n") <= LONGEST
+    path = tmp_path / "reproduction.py"
+    path.write_text(text)
+    ended = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr
+    assert "says they touch" in ended.stdout
+    assert ended.stdout.endswith("not reproduced: this version is right\n")
+    assert script_of(case) is None
+
+
+@pytest.mark.slow
+def test_mujoco_far_away_is_reproduced_without_this_program():
+    pytest.importorskip("mujoco")
+    found = survey("hull", cube_mesh(), ["far"], 200, ["fcl", "mujoco"], Budget())
+    (case,) = found.cases.values()
+    assert case.wrong == "mujoco"
+    text = script_of(minimise(case))
+    assert "harness" not in text
+    assert reproduces(text)
+    assert not reproduces(text.replace("return data.ncon > 0", "return True"))
