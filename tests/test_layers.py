@@ -37,13 +37,14 @@ KNOWS = {
     "methods": KERNELS | {"backends", "measure", "motion"},
     "store": set(),
     "compare": FLIGHT,
+    "truth": FLIGHT | {"experiment", "pair", "reference", "compare"},
     "runner": FLIGHT | {"experiment", "reference", "store"},
     "replay": {"store"},
     "report": {"store", "measure", "replay"},
     "pair": {"experiment", "scene", "narrowphase"},
-    "cli": FLIGHT | {"experiment", "reference", "store", "compare", "runner", "replay", "report"},
+    "cli": FLIGHT | {"experiment", "reference", "store", "compare", "truth", "runner", "replay", "report"},
 }
-LIBRARIES = {"fcl", "pybullet", "coal", "igl", "ipctk", "mujoco", "py_parry3d", "rapier3d", "trimesh"}
+LIBRARIES = {"fcl", "pybullet", "coal", "igl", "ipctk", "mujoco", "py_parry3d", "pydrake", "rapier3d", "trimesh"}
 
 
 def rooms_imported(file: Path) -> set[str]:

@@ -30,10 +30,10 @@ class MuJoCo:
 
     With the margin that is asked for a contact is a near pair, with its gap: MuJoCo culls by itself, and no call goes
     through Python but one. `mj_geomDistance`, pair by pair, gives gaps no more exact (5e-8 of a size, for 3e-8), and
-    took 4 times as long even of 60 bodies in close packing, where nearly all of the time is in the pairs.
+    took 4 times as long for all pairs of 30 hulls in close packing.
 
     Lengths are told in units of the median size. No verdict of hulls depends on it: sizes of 1e-4 to 1e6 give the same
-    verdicts untold, and gaps as exact. But a mesh below 1e-5 is refused for its small volume.
+    verdicts untold, and gaps as exact. But a mesh of 1e-6 is refused for its small volume.
     """
 
     name = "mujoco"

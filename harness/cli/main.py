@@ -24,6 +24,7 @@ COMMANDS = {
     "validate": "check experiment files and say every error",
     "list": "print experiments, backends, algorithms and metrics",
     "export": "print the measurements as CSV or JSON",
+    "truth": "make and check cases with proven times of impact",
     "mesh": "make, inspect and simplify mesh files",
     "new": "write a commented experiment to start from",
 }

@@ -11,11 +11,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="DIR", default="results/report", help="folder to write the pages into (default: %(default)s)"
     )
+    parser.add_argument(
+        "--figures",
+        action="append",
+        choices=["pdf", "png"],
+        default=[],
+        help="write figures in this format, too, beside their SVG; can be given again",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the pages, and say where the first one is."""
     from harness.report.site import write_report
 
-    print(write_report(arguments.db, arguments.out))
+    print(write_report(arguments.db, arguments.out, tuple(dict.fromkeys(arguments.figures))))
     return 0

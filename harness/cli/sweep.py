@@ -134,7 +134,7 @@ def _executor(arguments: argparse.Namespace) -> Executor | None:
 
 
 # s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
-_COMPARING = 45.0
+_COMPARING = 30.0
 
 
 def _compare(

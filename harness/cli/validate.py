@@ -1,11 +1,15 @@
-"""Check experiment files, and say everything that is wrong with them."""
+"""Check experiment files and declarations of truth sets, and say everything that is wrong with them."""
 
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from harness.cli.overrides import add_override_argument, overrides_of
-from harness.errors import InputError
+from harness.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,13 +19,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print a line for every valid experiment; the problems of the others are raised together."""
-    from harness.runner.preparation import examine
+    """Print a line for every valid file; the problems of the others are raised together."""
+    from pathlib import Path
 
-    experiments, _, problems = examine(arguments.paths, overrides_of(arguments))
+    from harness.experiment.kind import find_truth_declarations
+    from harness.runner.preparation import examine
+    from harness.truth.declaration import load_truth
+
+    problems: list[Problem] = []
+    truths = find_truth_declarations(arguments.paths)
+    for path in truths:
+        try:
+            declaration = load_truth(path)
+        except InputError as error:
+            problems += error.problems
+        else:
+            count = sum(family.count for family in declaration.families.values())
+            print(f"{path}: a set of {count} cases in {len(declaration.families)} families")
+    left = [path for path in arguments.paths if not _only_truths(Path(path), truths)]
+    experiments, _, others = examine(left, overrides_of(arguments)) if left else ([], {}, [])
     for experiment in experiments:
         points, runs = len(experiment.points), experiment.runs
         print(f"{experiment.name}: {points} point{'s' * (points != 1)}, {runs} run{'s' * (runs != 1)}")
+    problems += others
     if problems:
         raise InputError(problems)
     return 0
+
+
+def _only_truths(path: Path, truths: list[Path]) -> bool:
+    """Whether a path names sets of cases, and nothing else."""
+    files = set(path.rglob("*.yaml")) if path.is_dir() else {path}
+    return bool(files) and files <= set(truths)

@@ -109,6 +109,41 @@ return bool(manager.in_collision_internal())
 """
 
 
+_PARRY = """
+def turned(place, quaternion):
+    w, x, y, z = quaternion
+    pose = np.eye(4)
+    pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    pose[:3, 3] = place
+    return pose
+
+{make}
+world = py_parry3d.CollisionWorld([py_parry3d.CollisionGroup(name, [shape]) for name, shape in shapes.items()])
+return bool(world.check({{"a": turned(P, Q), "b": turned(R, S)}}, [("a", "b", 0.0)])[0])
+"""
+_PARRY_HULL = """import trimesh
+hull = py_parry3d.ConvexHull_from_trimesh
+solids = {"a": trimesh.Trimesh(A, FACES_A, process=False), "b": trimesh.Trimesh(B, FACES_B, process=False)}
+shapes = {name: hull(solid) for name, solid in solids.items()}"""
+_PARRY_MESH = """mesh = py_parry3d.TriMesh
+shapes = {"a": mesh(A, FACES_A.astype("u4")), "b": mesh(B, FACES_B.astype("u4"))}"""
+_RAPIER = """
+colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
+middle = (np.array(P) + R) / 2  # single precision has few digits to lose
+for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
+    shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
+    kinds = rapier3d.ActiveCollisionTypes.all()
+    collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
+    place = rapier3d.Vec3(*(place - middle))
+    colliders[colliders.insert(collider)].position = rapier3d.Isometry3(place, rapier3d.Rotation3(*quaternion))
+rapier3d.CollisionPipeline().step(
+    0.0, rapier3d.IslandManager(), rapier3d.BroadPhaseBvh(), narrow, rapier3d.RigidBodySet(), colliders)
+return any(touching for _, _, touching in narrow.intersection_pairs())
+"""
+
+
 def _smallest_32(sizes: Floats) -> float:
     return unit_of_smallest(sizes) / 32.0
 
@@ -125,6 +160,12 @@ def _trimesh() -> Call:
     return Call("trimesh", "trimesh.__version__", "import trimesh", _TRIMESH, _smallest_32)
 
 
+def _parry(make: str) -> Call:
+    return Call(
+        "py-parry3d", _PACKAGE.format("py-parry3d"), f"{_VERSION}import py_parry3d", _PARRY.format(make=make), unit_of
+    )
+
+
 CALLS: dict[tuple[str, Shape], Call] = {
     ("fcl", "hull"): _fcl(_FCL_HULL),
     ("fcl", "mesh"): _fcl(_FCL_MESH),
@@ -133,6 +174,9 @@ CALLS: dict[tuple[str, Shape], Call] = {
     ("trimesh", "hull"): _trimesh(),
     ("trimesh", "mesh"): _trimesh(),
     ("mujoco", "hull"): Call("mujoco", "mujoco.__version__", "import mujoco", _MUJOCO, unit_of),
+    ("parry3d", "hull"): _parry(_PARRY_HULL),
+    ("parry3d", "mesh"): _parry(_PARRY_MESH),
+    ("rapier3d", "hull"): Call("rapier3d", _PACKAGE.format("rapier3d"), f"{_VERSION}import rapier3d", _RAPIER, unit_of),
     ("pybullet", "hull"): Call(
         "pybullet", _PACKAGE.format("pybullet"), f"{_VERSION}import pybullet", _PYBULLET, unit_of_smallest
     ),

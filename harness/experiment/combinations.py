@@ -16,14 +16,14 @@ from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, QUERIES, Query, algorit
 Values = Mapping[str, Any]
 
 # The shapes of a backend that lacks one; what a backend from elsewhere holds is known when it is asked.
-SHAPES = {"trimesh": ("hull", "mesh"), "cgal": ("mesh",), "ipctk": ("mesh",)}
+SHAPES = {"trimesh": ("hull", "mesh"), "cgal": ("mesh",), "drake": ("sphere", "hull"), "ipctk": ("mesh",)}
 
 # Those whose gaps it tells, where it does not of all.
 SHAPES_WITH_GAPS = {"rapier3d": ("sphere", "hull")}
 
 # What a backend's own pipeline can be asked; what one from elsewhere can is known when it is asked.
 NATIVE_QUERIES: dict[str, tuple[Query, ...]] = {
-    **dict.fromkeys(("coal", "mujoco", "pybullet", "trimesh"), ("collision", "tolerance", "distance")),
+    **dict.fromkeys(("coal", "drake", "mujoco", "pybullet", "trimesh"), ("collision", "tolerance", "distance")),
     "cgal": ("collision",),
     "ipctk": ("collision", "impact"),
     "parry3d": ("collision", "tolerance"),

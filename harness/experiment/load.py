@@ -18,6 +18,7 @@ from harness.experiment.declaration import apply_override, check, declare
 from harness.experiment.document import KEY, LARGEST_FILE, read_document, read_value
 from harness.experiment.expand import Expansion, expand
 from harness.experiment.experiment import Experiment
+from harness.experiment.kind import is_truth_declaration
 from harness.experiment.leaves import LEAVES, SECTIONS, mesh_names_in, unknown_key
 from harness.experiment.mesh_location import locate_mesh
 from harness.experiment.messages import near, shown
@@ -131,11 +132,14 @@ def find_experiments(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
     for path in map(Path, paths):
         kind = _kind(path)
         if kind == "folder":
-            files = sorted(file for file in path.rglob("*.yaml") if file.is_file())
+            files = sorted(file for file in path.rglob("*.yaml") if file.is_file() and not is_truth_declaration(file))
             if not files:
                 problems.append(Problem("there is no experiment (*.yaml) in this folder", str(path)))
         elif kind is not None:
             files = [path]
+            if is_truth_declaration(path):
+                message = "this declares a set of cases, no experiment; `harness truth make` makes it"
+                problems.append(Problem(message, str(path)))
         else:
             files = []
             problems.append(Problem(_no_file(path), str(path)))

@@ -16,6 +16,7 @@ from markupsafe import Markup, escape
 from harness.modules import modules_in
 from harness.report.drawing import palette
 from harness.report.drawing.axes import Form
+from harness.report.drawing.canvas import FileFormat, collected
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,12 @@ class Figure:
         ground = f'<rect width="{width}" height="{height}" fill="#ffffff"/>'
         text = text.replace("<svg ", head, 1)
         return text.replace("</desc>", f"</desc>{ground}", 1) + "\n"
+
+    def as_file(self, form: FileFormat) -> tuple[str, bytes]:
+        """The wide drawing in another format: its path beside that of the SVG, and its bytes."""
+        with collected() as canvases:
+            self.draw("wide", f"{self.name}-wide")
+        return f"{self.file.removesuffix('.svg')}.{form}", canvases[-1].file(form)
 
     def _described(self, form: Form) -> str:
         if form not in self._drawn:

@@ -8,10 +8,12 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
 from harness.errors import InputError
+from harness.report.drawing.canvas import FileFormat
 from harness.report.experiment import ExperimentPage, csv
 from harness.report.markup import render as rendered
 from harness.report.missing import missing_runs
@@ -25,7 +27,7 @@ from harness.store.records import ExperimentRecord
 from harness.whole_file import write_whole
 
 
-def write_report(database: str | Path, out: str | Path) -> Path:
+def write_report(database: str | Path, out: str | Path, formats: Sequence[FileFormat] = ()) -> Path:
     """Write the pages of a results file, and return the overview's path.
 
     Files that the report does not make are left alone.
@@ -34,6 +36,7 @@ def write_report(database: str | Path, out: str | Path) -> Path:
     ----------
     database : the results file; it is only read
     out : folder of the pages, made where it is missing
+    formats : in which figures are written beside their SVG
 
     Raises
     ------
@@ -41,7 +44,7 @@ def write_report(database: str | Path, out: str | Path) -> Path:
         The results file cannot be read, or the folder cannot be written to.
     """
     out = Path(out)
-    contents = list(render(database))  # all of it or, where something is wrong, nothing
+    contents = list(render(database, formats))  # all of it or, where something is wrong, nothing
     try:
         for name, text in contents:
             write_whole(out / name, text)
@@ -52,8 +55,8 @@ def write_report(database: str | Path, out: str | Path) -> Path:
     return out / OVERVIEW
 
 
-def render(database: str | Path) -> Iterator[tuple[str, str]]:
-    """Every file of the report: (path below the report, text)."""
+def render(database: str | Path, formats: Sequence[FileFormat] = ()) -> Iterator[tuple[str, Any]]:
+    """Every file of the report: (path below the report, text; of a figure in another format, its bytes)."""
     results = Results(database)
     missing = missing_runs(results.records, results.runs)
     overview, further = Overview(results), pages_of(results)
@@ -61,6 +64,9 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     links = navigation([found.section for found in written], [page for page, _ in further])
     for page in results.pages:
         yield from _experiment(page, links)
+        for figures in page.figures.values():
+            for figure in figures:
+                yield from ((f"{page.folder}/{name}", data) for name, data in map(figure.as_file, formats))
     yield (
         OVERVIEW,
         rendered(
@@ -75,6 +81,7 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
     )
     if overview.map_figure is not None:
         yield overview.map_figure.file, overview.map_figure.document
+        yield from map(overview.map_figure.as_file, formats)
     for other, content in further:
         yield (
             other.file,
@@ -87,7 +94,9 @@ def render(database: str | Path) -> Iterator[tuple[str, str]]:
                 **content.values,
             ),
         )
-        yield from ((figure.file, figure.document) for figure in content.figures)
+        for figure in content.figures:
+            yield figure.file, figure.document
+            yield from map(figure.as_file, formats)
         yield from content.files.items()
     yield "findings.md", summary(results)
     yield "runs.csv", csv(results.runs)

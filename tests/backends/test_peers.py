@@ -19,8 +19,9 @@ from tests.conftest import cube_mesh, make_bodies, random_scene
 
 EXAMPLE = Path(__file__).parent / "example_backend"
 PEERS = {
-    "cgal": ("igl", "Cgal"), "coal": ("coal", "Coal"), "ipctk": ("ipctk", "Ipctk"), "mujoco": ("mujoco", "MuJoCo"),
-    "parry3d": ("py_parry3d", "Parry3d"), "rapier3d": ("rapier3d", "Rapier3d"), "trimesh": ("trimesh", "Trimesh"),
+    "cgal": ("igl", "Cgal"), "coal": ("coal", "Coal"), "drake": ("pydrake", "Drake"), "ipctk": ("ipctk", "Ipctk"),
+    "mujoco": ("mujoco", "MuJoCo"), "parry3d": ("py_parry3d", "Parry3d"), "rapier3d": ("rapier3d", "Rapier3d"),
+    "trimesh": ("trimesh", "Trimesh"),
 }  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import harness
+from harness.errors import InputError
 from harness.methods.registry import method_of
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
@@ -129,3 +130,20 @@ def test_bodies_at_rest_are_asked_about_once(query):
     assert found.metrics["narrow_tests"] == LAW.frames * (query != "impact")
     assert found.metrics.get("near_pairs", 0) == LAW.frames * (query != "impact")
     assert not len(found.trace.times) or found.trace.near
+
+
+def test_a_plan_says_of_every_stage_of_another_query_why_it_is_left_out():
+    scene = mixed("mesh")
+    for query, kept in (("distance", "surface_gap"), ("impact", "mesh_search")):
+        method = method_of(MethodName("fcl", "grid", "mesh", query), within=None if query == "impact" else WITHIN)
+        plan = method.plan(scene, LAW)
+        assert {"sphere_cull", kept} <= plan.kept
+        assert not {"hull_axis", "crossing", "fcl", "containment", "response", "penetration"} & plan.kept
+        assert all(stage.why for stage in plan.stages)
+
+
+def test_a_stage_whose_lack_would_change_an_answer_cannot_be_forced_off():
+    name = MethodName("fcl", "grid", "mesh", "distance")
+    method = method_of(name, within=WITHIN, forced={"surface_gap": False})
+    with pytest.raises(InputError, match="surface_gap cannot be forced off: there would be no gap"):
+        method.plan(mixed("mesh"), LAW)

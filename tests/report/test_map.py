@@ -1,9 +1,12 @@
 """The map: each field has the fastest method that is right there, and is in doubt where that cannot be told."""
 
 import re
+from io import BytesIO
 
 import pytest
+from PIL import Image
 
+from harness.report.drawing import palette
 from harness.report.map.answers import answers
 from harness.report.map.fields import maps_of
 from harness.report.results import Results
@@ -87,3 +90,21 @@ def test_every_algorithm_has_a_colour_and_a_letter_of_its_own():
     methods = [MethodName("fcl", name, "hull") for name in ALGORITHMS if name != "native"]
     assert len({style_of(method) for method in methods}) == len(methods)
     assert len({letter(method) for method in methods}) == len(methods)
+
+
+def test_figures_can_be_had_as_pdf_and_png_with_the_same_bytes_every_time(tmp_path):
+    path = write(tmp_path / "results.db", [invented()])
+    files, again = (dict(render(path, ("pdf", "png"))) for _ in range(2))
+    assert files == again
+    for name in [name for name in files if name.endswith(".svg")]:
+        assert files[name.replace(".svg", ".pdf")].startswith(b"%PDF")
+        assert files[name.replace(".svg", ".png")].startswith(b"\x89PNG")
+    assert {name for name in files if name.endswith(".svg")} >= {"map.svg", "pages/map/run_seconds.svg"}
+    assert {name: text for name, text in files.items() if isinstance(text, str)} == dict(render(path))
+
+
+def test_a_figure_in_another_format_has_the_light_colours(tmp_path):
+    image = dict(render(write(tmp_path / "results.db", [invented()]), ("png",)))["map.png"]
+    colours = {pixel for _, pixel in Image.open(BytesIO(image)).convert("RGB").getcolors(2**24)}
+    assert tuple(bytes.fromhex(palette.LIGHT[1][1:])) in colours  # of the grid, around its fields
+    assert (255, 255, 255) in colours

@@ -9,7 +9,9 @@ from __future__ import annotations
 import io
 import re
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any, Literal
 
 import matplotlib as mpl
@@ -29,6 +31,27 @@ _RC: dict[Any, Any] = {
     "text.parse_math": False,
 }
 _NOTHING = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+
+
+# What is drawn while somebody collects it, for files of another format than SVG.
+_collected: ContextVar[list[Canvas] | None] = ContextVar("_collected", default=None)
+FileFormat = Literal["pdf", "png"]
+# Times and versions of programs would make the bytes of a file differ.
+_UNDATED: dict[FileFormat, dict[str, None]] = {
+    "pdf": dict.fromkeys(("CreationDate", "Creator", "Producer")),
+    "png": {"Software": None},
+}
+
+
+@contextmanager
+def collected() -> Iterator[list[Canvas]]:
+    """The canvases that become SVG in the meantime, in order."""
+    found: list[Canvas] = []
+    token = _collected.set(found)
+    try:
+        yield found
+    finally:
+        _collected.reset(token)
 
 
 class Canvas:
@@ -96,6 +119,9 @@ class Canvas:
 
     def svg(self, name: str) -> str:
         """The SVG element alone: no prologue, no metadata, ids of its own, lettering in the page's font."""
+        found = _collected.get()
+        if found is not None:
+            found.append(self)
         buffer = io.StringIO()
         with mpl.rc_context(_RC | {"svg.hashsalt": name}):
             self._figure.savefig(buffer, format="svg", metadata=_NOTHING)
@@ -110,6 +136,23 @@ class Canvas:
         text = re.sub(r">\s+<", "><", re.sub(r"\s*\n\s*", " ", text))
         text = re.sub(r"<g>((?:<use [^>]*/>)+)</g>", _styled_once, text)
         return _named(text, name).strip().replace("</svg>", f"{self._hover_elements()}</svg>")
+
+    def file(self, form: FileFormat) -> bytes:
+        """The drawing as a file in light colours on white: PDF with its lettering as text, or PNG at twice the px."""
+        for artist in self._figure.get_children():
+            if isinstance(artist, Line2D):
+                artist.set_color(palette.light(artist.get_color()))
+                artist.set_markerfacecolor(palette.light(artist.get_markerfacecolor()))
+                artist.set_markeredgecolor(palette.light(artist.get_markeredgecolor()))
+            elif isinstance(artist, Text):
+                artist.set_color(palette.light(artist.get_color()))
+            elif isinstance(artist, Polygon):
+                artist.set_facecolor(palette.light(artist.get_facecolor()))
+        self._figure.patch.set_visible(True)
+        buffer = io.BytesIO()
+        with mpl.rc_context({**_RC, "pdf.fonttype": 42}):
+            self._figure.savefig(buffer, format=form, dpi=144, facecolor="#ffffff", metadata=_UNDATED[form])
+        return buffer.getvalue()
 
     def _hover_elements(self) -> str:
         elements = [
