@@ -78,7 +78,7 @@ def two(shape, gap, velocity, spin=0.0):
     bodies = make_bodies(
         [[0, 0, 0], [width + gap, aside, 0]], [[velocity, 0, 0], [0, 0, 0]], spins=[[spin, 0, 0], [0, 0, 0]]
     )
-    return Scene(shape, cube_mesh(), bodies, Box(np.full(3, 50.0)))
+    return Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 50.0)))
 
 
 def test_a_straight_flight_ends_when_the_closed_form_says(asked):

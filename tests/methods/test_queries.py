@@ -39,7 +39,7 @@ def mixed(shape, seed=3):
         sizes=rng.uniform(0.4, 1.2, 12),
         quaternions=scene.bodies.quaternions,
     )
-    return Scene(shape, cube_mesh(), bodies, scene.box)
+    return Scene(shape, (cube_mesh(),), bodies, scene.box)
 
 
 def by_pair(answers):
@@ -117,7 +117,7 @@ def test_bodies_that_touch_at_the_start_have_not_begun_to():
     bodies = make_bodies([[-0.3, 0.0, 0.0], [0.3, 0.0, 0.0]], velocities=[[0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]])
     turned = make_bodies(bodies.positions, bodies.velocities, quaternions=[[1.0, 0.0, 0.0, 0.0], [0.9, 0.1, 0.2, 0.3]])
     for shape in SHAPES:
-        scene = Scene(shape, cube_mesh(), turned, random_scene("sphere", 2, 8.0).box)
+        scene = Scene(shape, (cube_mesh(),), turned, random_scene("sphere", 2, 8.0).box)
         found = asked(scene, "impact", law=MotionLaw(0.5, 0.1, "none"))
         assert found.metrics["pair_hits"] == 0
 
