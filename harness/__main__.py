@@ -1,7 +1,19 @@
-"""`python -m harness`."""
+"""`python -m harness`, and the command `harness`."""
+
+from __future__ import annotations
 
 import sys
 
-from harness.cli.main import main
+from harness.cli.interruption import end_without_a_word
 
-sys.exit(main())
+
+def run() -> int:
+    """Run the command line of this process; Ctrl-C is heeded from the first moment, when imports take longest."""
+    end_without_a_word()
+    from harness.cli.main import main
+
+    return main()
+
+
+if __name__ == "__main__":
+    sys.exit(run())

@@ -2,8 +2,8 @@
 
 Clocks are compared as logarithms, and what all points of two neighbouring sweeps have in common, up to a factor of two,
 is taken for a drift of the machine and taken out, as in the difference of two sweeps. A step is named where two sweeps
-or more lie on either side of it, it is larger than 10 %, and its p-value counts among those of all points. In 30 000
-simulated series of nothing but noise, in 500 histories, two of those named any (tests/measure/test_steps.py). Counts
+or more lie on either side of it, it is larger than 10 %, and its p-value counts among those of all points. In simulated
+histories of nothing but noise fewer than one in twenty names any (tests/measure/test_steps.py). Counts
 that are exact have no noise: every change of one is a step.
 """
 
