@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from harness.cli.interruption import end_without_a_word
+from harness.cli.interruption import end_without_a_word, ignore_signals
 
 
 def run() -> int:
@@ -12,7 +12,10 @@ def run() -> int:
     end_without_a_word()
     from harness.cli.main import main
 
-    return main()
+    code = main()
+    if code > 128:  # else the interpreter, as it ends, would let a second signal change the exit code
+        ignore_signals()
+    return code
 
 
 if __name__ == "__main__":

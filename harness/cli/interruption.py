@@ -72,6 +72,12 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
     raise Interrupted(number)
 
 
+def ignore_signals() -> None:
+    """Let signals change nothing any more, for the last moment of a process that is ending because of one."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+
+
 def _end_without_a_word(number: int, frame: FrameType | None) -> NoReturn:
     os._exit(128 + number)
 

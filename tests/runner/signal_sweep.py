@@ -144,6 +144,9 @@ def once(target: str, name: str, tries: int, seed: int = 259) -> int:
                 print(f"{name} at the {target}, try {done}: {error}", flush=True)
                 for process in hit.processes():
                     process.kill()
+                if not ends:  # what one try leaves is not the next one's
+                    hit.database.unlink(missing_ok=True)
+                    hit.said.clear()
             if done < tries and done // 10 > shown // 10:  # so that something is known if this is broken off
                 print(f"{name} at the {target}: {done} tries so far, {failures} failures", flush=True)
                 shown = done
