@@ -78,7 +78,8 @@ class MachineHistory:
     ----------
     facts : of the machine
     sweeps : that measured the metric, in the order of time
-    drifts : by the number of the sweep, how many times as long all points took as in the first; {} where it is no clock
+    drifts : by the number of the sweep, the drift of the machine since the first; none of a sweep that shares too few
+        points with all before it, and {} where the metric is no clock
     points : those with steps first
     """
 
@@ -152,10 +153,9 @@ def _machine(
 
 def _drifts(numbers: Sequence[int], values: Mapping[str, Mapping[int, Summary]]) -> dict[int, float]:
     """How many times as long as in the first sweep all points took, from one sweep to the next that shares points."""
-    drifts: dict[int, float] = {}
-    for number in numbers:
-        drifts[number] = 1.0
-        for earlier in reversed([other for other in drifts if other < number]):
+    drifts = dict.fromkeys(numbers[:1], 1.0)
+    for number in numbers[1:]:
+        for earlier in reversed(list(drifts)):
             ratios = [
                 found[number].median / found[earlier].median
                 for found in values.values()
@@ -173,7 +173,7 @@ def _steps(
 ) -> dict[str, list[Step]]:
     """The steps of all points, looked at together."""
     series = {
-        key: [math.log(found[number].median / drifts[number]) for number in found]
+        key: [math.log(found[number].median / drifts.get(number, 1.0)) for number in found]
         for key, found in values.items()
         if len(found) >= FEWEST_SWEEPS and all(entry.median > 0.0 for entry in found.values())
     }
