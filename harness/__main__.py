@@ -1,7 +1,22 @@
-"""`python -m harness`."""
+"""`python -m harness`, and the command `harness`."""
+
+from __future__ import annotations
 
 import sys
 
-from harness.cli.main import main
+from harness.cli.interruption import end_without_a_word, ignore_signals
 
-sys.exit(main())
+
+def run() -> int:
+    """Run the command line of this process; Ctrl-C is heeded from the first moment, when imports take longest."""
+    end_without_a_word()
+    from harness.cli.main import main
+
+    code = main()
+    if code > 128:  # else the interpreter, as it ends, would let a second signal change the exit code
+        ignore_signals()
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(run())

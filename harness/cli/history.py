@@ -55,7 +55,7 @@ def _say(machine: MachineHistory, metric: str, *, everything: bool) -> None:
     for sweep in machine.sweeps:
         drift = machine.drifts.get(sweep.id)
         parts = [f"commit {(sweep.commit or 'unknown')[:12]}", f"harness {sweep.version}"]
-        parts += [f"all points {drift:.3g} times as long as at first"] if drift is not None and earlier else []
+        parts += [f"drift of the machine since the first {drift:.3g}"] if drift is not None and earlier else []
         print(f"  sweep {sweep.id}, {sweep.started}: {', '.join([*parts, *package_changes(sweep, earlier)])}")
         earlier = sweep
     unit = METRICS[metric].unit

@@ -32,7 +32,8 @@ def heeding_signals(*, last: bool = False) -> Iterator[None]:
 
     Parameters
     ----------
-    last : whether the process ends after it: then a signal that comes still later ends it without a word
+    last : whether the process ends after it: then a signal that comes still later ends it without a word, but with
+        the exit code of an interruption
     """
     if threading.current_thread() is not threading.main_thread():  # no other thread may say what signals do
         yield
@@ -44,7 +45,14 @@ def heeding_signals(*, last: bool = False) -> Iterator[None]:
         yield
     finally:
         for number, before in heeded.items():
-            signal.signal(number, signal.SIG_DFL if last else before)
+            signal.signal(number, _end_without_a_word if last else before)
+
+
+def end_without_a_word() -> None:
+    """Let a signal that comes while nothing has begun end the process, with the exit code of an interruption."""
+    for number in SIGNALS:
+        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(number, _end_without_a_word)
 
 
 def heed(number: int) -> None:
@@ -62,6 +70,16 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
         if signal.getsignal(each) == _interrupt:
             signal.signal(each, _end_at_once)
     raise Interrupted(number)
+
+
+def ignore_signals() -> None:
+    """Let signals change nothing any more, for the last moment of a process that is ending because of one."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+
+
+def _end_without_a_word(number: int, frame: FrameType | None) -> NoReturn:
+    os._exit(128 + number)
 
 
 def _end_at_once(number: int, frame: Any) -> NoReturn:

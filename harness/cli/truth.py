@@ -1,7 +1,8 @@
-"""Make and check sets of cases with proven times of impact.
+"""Make and check sets of cases with proven times of impact, and ask engines about them.
 
 `make` draws pairs of spinning bodies as a file declares them, and proves of each when they begin to touch; `check`
-proves every row of such a set anew, and exits 1 if one fails.
+proves every row of such a set anew, and exits 1 if one fails; `ask` tells which engines are right, and which miss a
+touch or tell it late.
 """
 
 from __future__ import annotations
@@ -10,10 +11,32 @@ import argparse
 
 DEFAULT_BUDGET = 7200.0
 
+_ASKED = """\
+Ask engines when the pairs of a set begin to touch, and count their answers, by family: right, missed (a pair that
+touches, told to be none), late, early (the safe side), false (one that never touches, told to), failed (an error, a
+crash, or no answer in time). "latest" and "earliest" are the most that a time was out of its bounds.
+
+Right is from `lower` to `upper`, give or take --within; or what the engine cannot tell apart: an answer a time d
+outside of the bounds is right, too, if d before `lower` the bodies were no farther apart than the engine's own
+tolerance, which for `own` is 1e-12 of the mean size, and for a backend what `harness list` says. The same goes for a
+pair that never touches and is told to, at the time that is told. That gap is measured by harness.distance,
+which is right to 1e-12 of a size; so much is allowed besides.
+
+NAMES:
+  own              this program's engine, harness.time_of_impact
+  fcl, rapier3d    a backend that says itself when bodies meet, as in `engine.query: impact`
+  fcl/brute-force  a backend's test of whether bodies touch, frame by frame at each --dt: the time is that of the
+                   first frame in which they do; so is a backend that does not say when
+
+Where a pair touches at the start, 0 is right. Backends that say when need not report such a pair: if they are silent
+about a pair, their own test at the start decides whether that means 0 or never.
+Times a query are CPU time, the median; loading is not in them. Of a stepped backend all frames are one query.
+"""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command takes."""
-    actions = parser.add_subparsers(dest="action", required=True, metavar="make|check")
+    actions = parser.add_subparsers(dest="action", required=True, metavar="make|check|ask")
     make = actions.add_parser("make", help="draw cases and prove them", description="Draw cases and prove them.")
     make.add_argument("file", metavar="FILE", help="a declaration, such as experiments/truth/spinning.yaml")
     make.add_argument("--out", metavar="DIR", required=True, help="the folder to write")
@@ -26,11 +49,43 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     check = actions.add_parser("check", help="prove every case anew", description="Prove every case anew.")
     check.add_argument("folder", metavar="DIR", help="a folder that `make` wrote")
+    ask = actions.add_parser(
+        "ask",
+        help="ask engines about the cases",
+        description=_ASKED,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    ask.add_argument("folder", metavar="DIR", help="a folder that `make` wrote")
+    ask.add_argument("--backends", metavar="NAMES", type=_words, default=["own"], help="such as own,fcl (default: own)")
+    ask.add_argument("--families", metavar="NAMES", type=_words, default=[], help="ask about these alone")
+    ask.add_argument("--every", metavar="N", type=_count, default=1, help="ask about every N-th case of each family")
+    ask.add_argument(
+        "--dt",
+        metavar="SECONDS",
+        type=_steps,
+        default="1/60,1/1000",
+        help="steps of what is stepped (default: 1/60,1/1000)",
+    )
+    ask.add_argument(
+        "--within",
+        metavar="SECONDS",
+        type=_seconds,
+        default="1e-9",
+        help="by which a time may be out of its bounds (default: 1e-9)",
+    )
+    ask.add_argument(
+        "--timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        default="60",
+        help="that a case may take; its process is then ended (default: 60)",
+    )
+    ask.add_argument("--json", action="store_true", help="one JSON document on standard output")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Do what was asked for; tells by the exit code whether everything holds."""
-    return _make(arguments) if arguments.action == "make" else _check(arguments)
+    return {"make": _make, "check": _check, "ask": _ask}[arguments.action](arguments)
 
 
 def _make(arguments: argparse.Namespace) -> int:
@@ -70,6 +125,64 @@ def _check(arguments: argparse.Namespace) -> int:
         print(problem)
     print(f"{given.cases.number - len(problems)} of {given.cases.number} cases are proven")
     return 1 if problems else 0
+
+
+def _ask(arguments: argparse.Namespace) -> int:
+    import json
+    from pathlib import Path
+
+    from harness.errors import InputError
+    from harness.truth.answer_table import document, table
+    from harness.truth.answerers import questions
+    from harness.truth.ask import ask, chosen
+    from harness.truth.folder import read_set
+
+    asked_of = questions(arguments.backends, arguments.dt)
+    given = read_set(Path(arguments.folder))
+    there = dict.fromkeys(given.cases.families.tolist())
+    if strangers := [name for name in arguments.families if name not in there]:
+        raise InputError(f"there is no family {', '.join(strangers)} in the set; there are {', '.join(there)}")
+    rows = chosen(given, arguments.families, arguments.every)
+    asked = {
+        question: ask(given, question, rows, arguments.within, arguments.timeout, _progress)
+        for question in dict.fromkeys(asked_of)
+    }
+    if arguments.json:
+        print(json.dumps(document(asked, arguments.folder, arguments.within, arguments.every), allow_nan=False))
+    else:
+        print(table(asked))
+    return 0
+
+
+def _words(text: str) -> list[str]:
+    return [word.strip() for word in text.split(",") if word.strip()]
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError("it must be 1 or more")
+    return number
+
+
+def _seconds(text: str) -> float:
+    seconds = _number(text)
+    if not 0.0 < seconds < float("inf"):
+        raise argparse.ArgumentTypeError(f"a time must be above 0 and finite, not {text}")
+    return seconds
+
+
+def _number(text: str) -> float:
+    """A number, or a fraction such as 1/60."""
+    above, slash, below = text.partition("/")
+    try:
+        return float(above) / float(below) if slash else float(text)
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(f"no number: {text!r}") from None
+
+
+def _steps(text: str) -> list[float]:
+    return [_seconds(word) for word in _words(text)]
 
 
 def _progress(line: str) -> None:

@@ -14,7 +14,6 @@ import numpy as np
 
 from harness.arrays import Flags, Pairs
 from harness.measure.clocks import Clock
-from harness.measure.conservation import energy
 from harness.methods.impact_times import FrameMotion, ImpactFinder
 from harness.methods.near_pairs import NearFinder
 from harness.methods.observer import Folds, Observer, Onsets
@@ -23,7 +22,7 @@ from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.answers import NearLog
 from harness.motion.course import folded_course
 from harness.motion.finite import require_finite_state
-from harness.motion.hits import Outcome, Trace
+from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
@@ -115,7 +114,7 @@ class Asking(ABC):
             "escaped": float(observer.escaped),
             "event_digest": observer.digest.value,
         }
-        trace = _trace(scene, flight, end, counted) if traced else None
+        trace = flight.observer.trace(end, counted, near=flight.log is not None)
         course = folded_course(scene.bodies, scene.box, end) if plan.keeps("recording") else None
         return Outcome(metrics, trace, course, flight.log.answers() if flight.log is not None else None)
 
@@ -222,20 +221,3 @@ class ImpactAsking(Asking):
 _NOTHING: Mapping[str, float] = {"pair_tests": 0, "narrow_tests": 0}
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 _NO_FLAGS: Flags = np.empty(0, np.bool_)
-
-
-def _trace(scene: Scene, flight: _Flight, end: float, counted: Mapping[str, float]) -> Trace | None:
-    log, trajectory = flight.observer.log, flight.trajectory
-    if log is None:
-        return None
-    trajectory.move_to(end)
-    velocities = trajectory.velocities_at(end)
-    return Trace(
-        *log.arrays(),
-        time=end,
-        positions=trajectory.positions.copy(),
-        velocities=velocities,
-        energy=energy(velocities, scene.bodies.masses),
-        counters=counted,
-        near=flight.log is not None,
-    )

@@ -6,13 +6,16 @@ the consecutive frames that see a pair touch.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
-from harness.measure.conservation import Conservation
+from harness.measure.conservation import Conservation, energy
 from harness.methods.penetration import Penetration
 from harness.motion.digest import EventDigest
-from harness.motion.hits import HitLog
+from harness.motion.hit_states import HitStates
+from harness.motion.hits import HitLog, Trace
 from harness.motion.kinematics import Trajectory
 from harness.scene.scene import Scene
 
@@ -35,6 +38,7 @@ class Observer:
         self.digest = EventDigest()
         self.conservation = Conservation(scene.bodies)
         self._trajectory = trajectory
+        self._masses = scene.bodies.masses
         self._half = scene.box.half
         self._outside = np.zeros(len(scene.bodies), np.bool_)
         self._penetration = Penetration(scene) if penetration else None
@@ -43,6 +47,25 @@ class Observer:
     def escaped(self) -> int:
         """Bodies whose centre was outside the box in some frame."""
         return int(np.count_nonzero(self._outside))
+
+    def trace(
+        self, end: float, counters: Mapping[str, float], *, states: HitStates | None = None, near: bool = False
+    ) -> Trace | None:
+        """All hits and the state at the end, s, to which the trajectory is moved; None where none were kept."""
+        if self.log is None:
+            return None
+        self._trajectory.move_to(end)
+        velocities = self._trajectory.velocities_at(end)
+        return Trace(
+            *self.log.arrays(),
+            time=end,
+            positions=self._trajectory.positions.copy(),
+            velocities=velocities,
+            energy=energy(velocities, self._masses),
+            counters=counters,
+            states=states,
+            near=near,
+        )
 
     def frame(self, time: float, pairs: Pairs, hits: Flags, walls: Ints | Flags, times: Floats | None = None) -> None:
         """Observe one frame.

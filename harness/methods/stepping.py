@@ -16,14 +16,13 @@ from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.backends.contract import read_only, require_pairs
 from harness.backends.protocol import Backend
 from harness.measure.clocks import Clock
-from harness.measure.conservation import energy
 from harness.methods.observer import Folds, Observer, Onsets
 from harness.methods.stages import Plan
 from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.course import CourseLog, folded_course
 from harness.motion.finite import require_finite_state
 from harness.motion.hit_states import HitStateLog, RecordedResponse
-from harness.motion.hits import Outcome, Trace
+from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.motion.response import CollisionResponse
@@ -129,7 +128,7 @@ class Stepping:
             **clock_metrics(clock, law.frames, end),
             **_errors(observer, response, plan),
         }
-        trace = _trace(scene, trajectory, observer, states, end, counted) if traced else None
+        trace = observer.trace(end, counted, states=None if states is None else states.states())
         if course is not None:
             return Outcome(metrics, trace, course.course())
         return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
@@ -304,26 +303,3 @@ def _errors(observer: Observer, response: CollisionResponse | None, plan: Plan) 
     if plan.keeps("penetration"):
         errors["max_penetration"] = observer.max_penetration
     return errors
-
-
-def _trace(
-    scene: Scene,
-    trajectory: Trajectory,
-    observer: Observer,
-    states: HitStateLog | None,
-    end: float,
-    counted: dict[str, float],
-) -> Trace | None:
-    if observer.log is None:
-        return None
-    trajectory.move_to(end)
-    velocities = trajectory.velocities_at(end)
-    return Trace(
-        *observer.log.arrays(),
-        time=end,
-        positions=trajectory.positions.copy(),
-        velocities=velocities,
-        energy=energy(velocities, scene.bodies.masses),
-        counters=counted,
-        states=None if states is None else states.states(),
-    )

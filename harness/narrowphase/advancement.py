@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.free_flight import Motion, orientation, place, turning_speed
 from harness.narrowphase.gjk import COLD_START, MARGIN, WarmStart, hull_distance, relative_pose
 from harness.narrowphase.support import SupportMap, support
@@ -173,7 +173,7 @@ def open_for(one: TurnedHull, other: TurnedHull, gap: Gap) -> float:
     return time
 
 
-@inner
+@strict_step
 def reach_towards(one: TurnedHull, other: TurnedHull, axis_a: Vector, axis_b: Vector) -> float:
     """How far hull a reaches against an axis from its centre, and hull b along one, together, m."""
     hull_a, hull_b = one.hull, other.hull

@@ -149,7 +149,7 @@ def end_of_contact(
     return ContactEnd(SearchVerdict.STALLED, begin + now, MOST_STEPS)
 
 
-@kernel
+@inner
 def hold_of_hulls(
     hull_a: SupportMap, hull_b: SupportMap, seen: RelativeMotion, near: float, start: WarmStart
 ) -> tuple[Hold, WarmStart]:
@@ -163,7 +163,7 @@ def hold_of_hulls(
     return Hold(overlap.lasts, near), overlap.warm_start
 
 
-@kernel
+@inner
 def hold_of_surfaces(
     shape_a: MeshShape, shape_b: MeshShape, seen: RelativeMotion, near: float, last: LastCrossing
 ) -> tuple[Hold, LastCrossing]:

@@ -107,7 +107,7 @@ def contacts(
     return Contacts(intervals[:count].copy(), False)
 
 
-@kernel
+@inner
 def next_hull_contact(
     hull_a: SupportMap, hull_b: SupportMap, a: Motion, b: Motion, begin: float, end: float, tolerance: float
 ) -> Onset:
@@ -116,7 +116,7 @@ def next_hull_contact(
     return Onset(found.verdict, found.time)
 
 
-@kernel
+@inner
 def next_mesh_contact(
     shape_a: MeshShape, shape_b: MeshShape, a: Motion, b: Motion, begin: float, end: float, tolerance: float
 ) -> Onset:

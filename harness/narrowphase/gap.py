@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.gjk import Relative, WarmStart, difference, hull_distance, vertex_a, vertex_b
 from harness.narrowphase.mesh_advancement import MeshShape, MeshWarmStart, mesh_shape
 from harness.narrowphase.simplex import Simplex
@@ -191,7 +191,7 @@ def mesh_gap(
     return gap, MeshWarmStart(hulls.warm_start, found.leaves)
 
 
-@inner
+@strict_step
 def between(lower: float, upper: float, point_a: Vector, point_b: Vector, touching: float) -> Gap:
     """The gap between two points, which are made one where it cannot be told from 0."""
     if upper > touching:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Ints, Pairs
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.gap import Accuracy, Gap, MeshGapShape, hull_gap, mesh_gap, mesh_gap_shape
 from harness.narrowphase.gjk import COLD_START, WarmStart
 from harness.narrowphase.mesh_advancement import MeshWarmStart
@@ -144,7 +144,7 @@ def mesh_pair_gaps(
         write_gap(found, k, gap, placement, i)
 
 
-@inner
+@strict_step
 def remembered(last: GapMemory, place: int, key: int) -> int:
     """The place of the first key of the last frame, from a place on, that is not below one."""
     while place < len(last.keys) and last.keys[place] < key:
@@ -152,7 +152,7 @@ def remembered(last: GapMemory, place: int, key: int) -> int:
     return place
 
 
-@inner
+@strict_step
 def simplex_of(last: GapMemory, place: int, key: int) -> WarmStart:
     """The simplex that is remembered at a place, if it is that of a key."""
     start = COLD_START
@@ -162,14 +162,14 @@ def simplex_of(last: GapMemory, place: int, key: int) -> WarmStart:
     return start
 
 
-@inner
+@strict_step
 def remember(now: GapMemory, k: int, key: int, start: WarmStart, leaves: NodePair) -> None:
     now.keys[k] = key
     now.simplices[k, 0], now.simplices[k, 1], now.simplices[k, 2], now.simplices[k, 3] = start
     now.leaves[k, 0], now.leaves[k, 1] = leaves
 
 
-@inner
+@strict_step
 def write_gap(found: Gaps, k: int, gap: Gap, placement: Placement, i: int) -> None:
     """Write a gap in m, and the points where they are in the world."""
     metre, turn, x = 1.0 / placement.scale, rotation_of(placement, i), placement.positions

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.simplex import (
     ALL_CORNERS,
     Nearest,
@@ -175,7 +175,7 @@ def hull_distance(
     return Distance(verdict, lower, upper, best, point_a, point_b, simplex.vertices)
 
 
-@inner
+@strict_step
 def farthest(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, along: Vector) -> int:
     """The vertices, a << 32 | b, whose difference a - b reaches farthest along a direction that is not zero."""
     back = turned_back(pose.rotation, along)
@@ -184,19 +184,19 @@ def farthest(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, along: Vect
     return int(np.int64(a) << 32 | np.int64(b))
 
 
-@inner
+@strict_step
 def difference(hull_a: SupportMap, hull_b: SupportMap, pose: Relative, vertices: int) -> Vector:
     """The point a - b of the Minkowski difference, of vertices a << 32 | b."""
     return minus(vertex_a(hull_a, pose, vertices >> 32), vertex_b(hull_b, pose, vertices & 0xFFFFFFFF))
 
 
-@inner
+@strict_step
 def vertex_a(hull: SupportMap, pose: Relative, vertex: int) -> Vector:
     place = hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]
     return scaled(place, pose.size_a)
 
 
-@inner
+@strict_step
 def vertex_b(hull: SupportMap, pose: Relative, vertex: int) -> Vector:
     place = hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]
     return plus(pose.offset, scaled(turned(pose.rotation, place), pose.size_b))

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import inner, kernel, strict_step
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.free_flight import Motion, orientation
 from harness.narrowphase.tree_pairs import Proximity
 from harness.narrowphase.triangle_tree import TriangleTree
@@ -82,24 +82,24 @@ def flight_of(a: Motion, b: Motion, aim: float) -> Flight:
     return Flight(a, b, sqrt(dot(a.spin, a.spin)), sqrt(dot(b.spin, b.spin)), aim)
 
 
-@inner
+@strict_step
 def instant_of(flight: Flight, time: float) -> Instant:
     a, b = flight.a, flight.b
     offset = plus(b.position, scaled(b.velocity, time))
     return Instant(flight, orientation(a, time), orientation(b, time), offset, a.size, b.size)
 
 
-@inner
+@strict_step
 def moving_disc_a(tree: TriangleTree, at: Instant, node: int) -> MovingDisc:
     return moving_disc(tree, node, at.turn_a, at.flight.a)
 
 
-@inner
+@strict_step
 def moving_disc_b(tree: TriangleTree, at: Instant, node: int) -> MovingDisc:
     return moving_disc(tree, node, at.turn_b, at.flight.b)
 
 
-@inner
+@strict_step
 def moving_disc(tree: TriangleTree, node: int, turn: Matrix, body: Motion) -> MovingDisc:
     """The disc of a node of a body that is turned so."""
     d, size = tree.discs, body.size
@@ -109,7 +109,7 @@ def moving_disc(tree: TriangleTree, node: int, turn: Matrix, body: Motion) -> Mo
     return MovingDisc(arm, velocity, sqrt(dot(velocity, velocity)), size * d[node, 3], normal, size * d[node, 7])
 
 
-@inner
+@strict_step
 def triangle_of(tree: TriangleTree, k: int, turn: Matrix, size: float) -> Triangle:
     """The corners of a triangle of a body that is turned so, from the centre of the body, m."""
     c = tree.corners

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Floats
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.advancement import time_of_impact
 from harness.narrowphase.free_flight import Motion, place, seen_at
 from harness.narrowphase.gjk import COLD_START
@@ -114,13 +114,13 @@ def near_impact(
     return Onset(found.verdict, min(end, begin + (entry + found.time)))
 
 
-@inner
+@strict_step
 def answer(verdict: SearchVerdict, time: float) -> float:
     """The time of an impact, inf for none, nan where neither is known."""
     return time if verdict == SearchVerdict.FOUND else (np.inf if verdict == SearchVerdict.NEVER else np.nan)
 
 
-@inner
+@strict_step
 def motion_at(body: Motions, k: int) -> Motion:
     """The k-th motion of a body."""
     q, v, w, size = body.start.quaternions, body.velocities, body.spins, body.start.size

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Floats, Ints
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.tree_pairs import NodePair
 
 
@@ -30,13 +30,13 @@ def node_queue() -> NodeQueue:
     return NodeQueue(np.empty(64), np.empty(64, np.int64))
 
 
-@inner
+@strict_step
 def earliest(queue: NodeQueue) -> NodePair:
     """The pair that comes first, of one at least."""
     return NodePair(queue.nodes[0] >> 32, queue.nodes[0] & 0xFFFFFFFF)
 
 
-@inner
+@strict_step
 def drop_earliest(queue: NodeQueue, count: int) -> int:
     """Take the first of `count` pairs out; returns how many are left."""
     times, nodes = queue.times, queue.nodes
@@ -54,7 +54,7 @@ def drop_earliest(queue: NodeQueue, count: int) -> int:
     return count
 
 
-@inner
+@strict_step
 def enqueue(queue: NodeQueue, count: int, time: float, pair: NodePair) -> int:
     """Put a pair in, for which there is room, besides `count` others; returns how many there are."""
     times, nodes = queue.times, queue.nodes

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Ints
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.gjk import Relative
 from harness.narrowphase.tree_pairs import NodePair, Proximity, Trees, halves, push_near
 from harness.narrowphase.triangle_tree import TriangleTree
@@ -32,7 +32,7 @@ class Disc(NamedTuple):
     thickness: float
 
 
-@inner
+@strict_step
 def push_near_halves(trees: Trees, pose: Relative, nodes: NodePair, margin: float, stack: Ints, height: int) -> int:
     """Replace a pair of nodes by those of its halves that are not a margin apart; returns the stack's new height."""
     return push_near(stack, height, halves(trees, nodes, pose, margin, disc_a, disc_b, proximity))
@@ -58,14 +58,14 @@ def proximity(one: Disc, two: Disc, pose: Relative, margin: float) -> Proximity:
     return Proximity(np.inf, np.inf) if apart else Proximity(0.0, squared / (reach * reach))
 
 
-@inner
+@strict_step
 def disc_a(tree: TriangleTree, pose: Relative, node: int) -> Disc:
     d, size = tree.discs, pose.size_a
     centre, normal = (d[node, 0], d[node, 1], d[node, 2]), (d[node, 4], d[node, 5], d[node, 6])
     return Disc(scaled(centre, size), size * d[node, 3], normal, size * d[node, 7])
 
 
-@inner
+@strict_step
 def disc_b(tree: TriangleTree, pose: Relative, node: int) -> Disc:
     d, size = tree.discs, pose.size_b
     centre, normal = (d[node, 0], d[node, 1], d[node, 2]), (d[node, 4], d[node, 5], d[node, 6])
@@ -73,7 +73,7 @@ def disc_b(tree: TriangleTree, pose: Relative, node: int) -> Disc:
     return Disc(plus(pose.offset, from_b), size * d[node, 3], turned(pose.rotation, normal), size * d[node, 7])
 
 
-@inner
+@strict_step
 def triangle_a(tree: TriangleTree, pose: Relative, k: int) -> Triangle:
     c, size = tree.corners, pose.size_a
     return (
@@ -83,7 +83,7 @@ def triangle_a(tree: TriangleTree, pose: Relative, k: int) -> Triangle:
     )
 
 
-@inner
+@strict_step
 def triangle_b(tree: TriangleTree, pose: Relative, k: int) -> Triangle:
     c, size = tree.corners, pose.size_b
     return (

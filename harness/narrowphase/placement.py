@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Flags, Floats
-from harness.kernel import inner
+from harness.kernel import strict_step
 from harness.narrowphase.gjk import Relative, relative_pose
 from harness.narrowphase.units import unit_of
 from harness.narrowphase.vectors import Matrix, Vector, minus, rotation, scaled
@@ -52,7 +52,7 @@ class Places:
         return Placement(positions, quaternions, *self._fixed)
 
 
-@inner
+@strict_step
 def rotation_of(placement: Placement, body: int) -> Matrix:
     """The body's matrix, made when it is first asked for.
 
@@ -79,14 +79,14 @@ def rotation_of(placement: Placement, body: int) -> Matrix:
     )
 
 
-@inner
+@strict_step
 def offset_of(placement: Placement, i: int, j: int) -> Vector:
     """From the centre of body i to that of j, in units."""
     x = placement.positions
     return scaled(minus((x[j, 0], x[j, 1], x[j, 2]), (x[i, 0], x[i, 1], x[i, 2])), placement.scale)
 
 
-@inner
+@strict_step
 def pose_of(placement: Placement, i: int, j: int) -> Relative:
     """Body j as seen from body i."""
     offset = offset_of(placement, i, j)

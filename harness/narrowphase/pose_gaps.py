@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from harness.arrays import Floats
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.gap import Accuracy, Gap, MeshGapShape, hull_gap, mesh_gap, sphere_gap
 from harness.narrowphase.gjk import COLD_START, Relative, relative_pose
 from harness.narrowphase.mesh_advancement import MESH_COLD_START
@@ -71,25 +71,25 @@ def mesh_gaps(
         write(found, k, gap, turn(a, k), position(a, k))
 
 
-@inner
+@strict_step
 def pose_at(a: Poses, b: Poses, k: int) -> Relative:
     """The k-th pose of body b as seen from body a."""
     return relative_pose(turn(a, k), a.size, turn(b, k), b.size, minus(position(b, k), position(a, k)))
 
 
-@inner
+@strict_step
 def position(body: Poses, k: int) -> Vector:
     x = body.positions
     return x[k, 0], x[k, 1], x[k, 2]
 
 
-@inner
+@strict_step
 def turn(body: Poses, k: int) -> Matrix:
     q = body.quaternions
     return rotation(q[k, 0], q[k, 1], q[k, 2], q[k, 3])
 
 
-@inner
+@strict_step
 def write(found: Gaps, k: int, gap: Gap, turn_a: Matrix, position_a: Vector) -> None:
     found.gaps[k] = gap.upper
     point_a, point_b = plus(position_a, turned(turn_a, gap.point_a)), plus(position_a, turned(turn_a, gap.point_b))

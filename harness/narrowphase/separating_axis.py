@@ -7,12 +7,12 @@ from math import sqrt
 
 import numpy as np
 
-from harness.kernel import inner
+from harness.kernel import strict_step
 from harness.narrowphase.support import SupportMap, support
 from harness.narrowphase.vectors import Matrix, Vector, dot, turned_back
 
 
-@inner
+@strict_step
 def gap_along(
     hull_a: SupportMap,
     hull_b: SupportMap,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.vectors import Vector, cross, dot, minus, plus, scaled
 
 # Of the product of the lengths: the most that rounding changes a triple product, and some more.
@@ -54,7 +54,7 @@ class Simplex(NamedTuple):
     size: int
 
 
-@inner
+@strict_step
 def kept(simplex: Simplex, corners: int) -> Simplex:
     """The simplex of those corners alone, a bit for each."""
     a, b, c, d = simplex.a, simplex.b, simplex.c, simplex.d
@@ -75,7 +75,7 @@ def kept(simplex: Simplex, corners: int) -> Simplex:
     return Simplex(a, b, c, d, (at_a, at_b, at_c, at_d), size)
 
 
-@inner
+@strict_step
 def extended(simplex: Simplex, corner: Vector, vertex: int) -> Simplex:
     """The simplex, of three corners at most, and one more."""
     a, b, c, d = simplex.a, simplex.b, simplex.c, simplex.d
@@ -89,7 +89,7 @@ def extended(simplex: Simplex, corner: Vector, vertex: int) -> Simplex:
     return Simplex(a, b, c, d, (at_a, at_b, at_c, at_d), simplex.size + 1)
 
 
-@inner
+@strict_step
 def nearest_on(simplex: Simplex) -> Nearest:
     """The point nearest to the origin of a simplex of at least two corners, as `nearest_on_tetrahedron` has it."""
     if simplex.size == 2:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.vectors import Vector
 
 # A vertex leaves a cell's list only if another reaches this much farther (in units of the diameter) in every direction
@@ -57,7 +57,7 @@ def support_map(vertices: Floats) -> SupportMap:
     return SupportMap(vertices, start, candidates, side)
 
 
-@inner
+@strict_step
 def support(hull: SupportMap, x: float, y: float, z: float) -> int:
     """The vertex that reaches farthest along (x, y, z), which must be finite and not zero. Of others, any."""
     scale = 1.0 / (abs(x) + abs(y) + abs(z))

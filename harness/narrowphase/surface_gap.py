@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Floats, Ints
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.gjk import Relative
 from harness.narrowphase.placed_parts import Disc, disc_a, disc_b
 from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees
@@ -122,7 +122,7 @@ def surface_gap(
     return best
 
 
-@inner
+@strict_step
 def push_halves(
     trees: Trees,
     blocks: Blocks,
@@ -182,14 +182,14 @@ def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> tuple[
     return bound, near
 
 
-@inner
+@strict_step
 def extent_along(disc: Disc, cosine: float) -> float:
     """How far a disc reaches from its centre along an axis, given the cosine of the axis and its normal."""
     sine = sqrt(max(0.0, 1.0 - cosine * cosine)) + 1e-7  # more than rounding takes from it
     return disc.thickness * abs(cosine) + disc.radius * sine
 
 
-@inner
+@strict_step
 def split(along: float, squared: float, extent: float, reach: float) -> float:
     """A bound, squared, from the ways between two discs along an axis and across it.
 
@@ -253,7 +253,7 @@ def nearest_of_blocks(
     return best, limit
 
 
-@inner
+@strict_step
 def place_block(blocks: TriangleBlocks, pose: Relative, begin: int, count: int, axis: Vector, parts: Floats) -> float:
     """Place triangles of body b in the axes of a: how far they reach along an axis, and the spheres around them.
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol, TypeVar
 
 from harness.arrays import Ints
-from harness.kernel import inner
+from harness.kernel import strict_step
 from harness.narrowphase.triangle_tree import TriangleTree
 
 # Pairs of nodes on the way at any time, at most: two a level, and fewer than 64 levels a tree.
@@ -70,7 +70,7 @@ Place = TypeVar("Place", bound=Placed)
 Disc = TypeVar("Disc")
 
 
-@inner
+@strict_step
 def halves(
     trees: Trees,
     nodes: NodePair,
@@ -107,7 +107,7 @@ def halves(
     return Halves(left, of_left.wait, right, of_right.wait)
 
 
-@inner
+@strict_step
 def push_near(stack: Ints, height: int, found: Halves) -> int:
     """Put the pairs that may touch now on a (DEPTH, 2) stack, the deeper one on top; returns its new height."""
     if found.second_wait == 0.0:

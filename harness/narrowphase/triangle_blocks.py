@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.arrays import Floats, Ints
-from harness.kernel import inner, kernel
+from harness.kernel import kernel, strict_step
 from harness.narrowphase.gjk import Relative
 from harness.narrowphase.triangle_tree import TriangleTree
 from harness.narrowphase.vectors import Triangle, plus, scaled, turned
@@ -62,7 +62,7 @@ def triangle_blocks(tree: TriangleTree) -> TriangleBlocks:
     return TriangleBlocks(first, counts, leaves, balls, corners)
 
 
-@inner
+@strict_step
 def block_triangle_a(blocks: TriangleBlocks, pose: Relative, k: int) -> Triangle:
     """The k-th triangle of body a, in the axes of a."""
     c, size = blocks.corners, pose.size_a
@@ -73,7 +73,7 @@ def block_triangle_a(blocks: TriangleBlocks, pose: Relative, k: int) -> Triangle
     )
 
 
-@inner
+@strict_step
 def block_triangle_b(blocks: TriangleBlocks, pose: Relative, k: int) -> Triangle:
     """The k-th triangle of body b, in the axes of a."""
     c, size = blocks.corners, pose.size_b

@@ -84,3 +84,15 @@ def test_a_command_runs_in_any_thread():
     thread.start()
     thread.join()
     assert codes == [2]
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("moment", ["while it is imported", "when it has ended"])
+def test_a_signal_before_and_after_a_command_ends_it_without_a_word(number, code, moment):
+    program = (
+        "from harness.cli.interruption import end_without_a_word, heeding_signals\n"
+        + ("end_without_a_word()" if moment == "while it is imported" else "with heeding_signals(last=True): pass")
+        + f"\nimport os, time; os.kill(os.getpid(), {int(number)}); time.sleep(60)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (code, "")

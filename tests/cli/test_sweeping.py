@@ -111,7 +111,8 @@ def test_trace_prints_one_json_document(small, capsys):
     assert set(document) == {"events", "final", "counters"}
     assert len(events) == document["counters"]["events"] > 0
     assert {event["kind"] for event in events} <= {"pair", "wall"}
-    assert all(set(event) == {"time", "kind", "bodies"} for event in events if event["kind"] == "pair")
+    states = {"positions", "velocities_before", "velocities_after", "impulses"}
+    assert all(set(event) == {"time", "kind", "bodies"} | states for event in events if event["kind"] == "pair")
     assert all(event["wall"] in ("x-", "x+", "y-", "y+", "z-", "z+") for event in events if event["kind"] == "wall")
     assert [event["time"] for event in events] == sorted(event["time"] for event in events)
     assert document["final"]["time"] == pytest.approx(4.0)

@@ -127,7 +127,7 @@ def test_list_says_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
     assert "wrong: `harness validate experiments/bad.yaml` says how" in out
     assert main(["list", "--json"]) == 0
     listing = json.loads(capsys.readouterr().out)
-    assert list(listing) == ["experiments", "backends", "algorithms", "metrics"]
+    assert list(listing) == ["experiments", "backends", "algorithms", "queries", "metrics"]
     assert [row["runs"] for row in listing["experiments"]] == [None, 10]
     assert {"fcl", "pybullet"} <= {row["name"] for row in listing["backends"]}
     assert {"name": "pair_tests", "unit": "1"}.items() <= next(

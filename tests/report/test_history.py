@@ -8,6 +8,7 @@ import pytest
 from harness.cli.main import main
 from harness.errors import InputError
 from harness.report.history.history import history
+from harness.report.history.page import points_table, sweeps_table
 from harness.report.site import render
 from harness.store.database import Database
 from harness.store.records import PointRow
@@ -20,14 +21,14 @@ POINTS = [PointRow(f"key-{count}", {"count": count, **METHOD}) for count in rang
 def swept(tmp_path):
     """Writes sweeps of ten points, with drifts; the point of 9 bodies is 1.6 times as slow from the 5th on."""
 
-    def write(drifts, machine=1, slower=9, repeats=3):
+    def write(drifts, machine=1, slower=9, repeats=3, points=POINTS):
         rng = np.random.default_rng(machine)
         with Database.open(tmp_path / "results.db") as database:
             for number, drift in enumerate(drifts):
                 packages = {"numpy": "2.0" if number < 4 else "2.1"}
                 sweep = database.begin_sweep("harness sweep", f"commit{number}", "0.1.0", {"cores": machine}, packages)
-                database.list_experiment(sweep, "first", "A title", None, "title: A title", {}, POINTS)
-                for point in POINTS:
+                database.list_experiment(sweep, "first", "A title", None, "title: A title", {}, points)
+                for point in points:
                     count = point.parameters["count"]
                     step = 1.6 if count == slower and number >= 4 else 1.0
                     for repeat in range(repeats):
@@ -52,6 +53,15 @@ def test_a_step_is_named_with_its_sweep_its_commits_and_its_ratio(swept):
 def test_a_drift_of_the_machine_is_no_step(swept):
     [machine] = history(swept([1.0, 1.0, 1.0, 1.3, 1.3, 1.3, 1.3, 1.3], slower=None))
     assert machine.steps == []
+
+
+def test_sweeps_of_other_points_have_no_drift_and_no_table_of_points(swept):
+    others = [PointRow(f"other-{point.key}", point.parameters | {"dt": 0.01}) for point in POINTS]
+    swept([1.0])
+    [machine] = history(swept([1.0], points=others))
+    assert list(machine.drifts.values()) == [1.0]
+    assert [row[-1].text for row in sweeps_table(machine).rows] == ["1×", "–"]
+    assert points_table(machine, "run_seconds") is None
 
 
 def test_every_change_of_an_exact_count_is_a_step(swept):

@@ -137,7 +137,10 @@ class Killed:
                 connection.execute(f"SELECT {what} FROM {table} JOIN point ON point.id = {table}.point").fetchall()
                 for table in ("run", "control")
             )
-            empty = "SELECT count(*) FROM run WHERE NOT EXISTS (SELECT * FROM metric WHERE metric.run = run.id)"
+            empty = (
+                "SELECT count(*) FROM run WHERE status = 'ok' "
+                "AND NOT EXISTS (SELECT * FROM metric WHERE metric.run = run.id)"
+            )
             assert connection.execute(empty).fetchone() == (0,)
         finally:
             connection.close()

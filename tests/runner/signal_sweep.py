@@ -79,7 +79,7 @@ class Hit(Killed):
         done, text = 0, ""
         while sweep.poll() is None:
             time.sleep(self.order.uniform(0.0, BETWEEN))
-            text += sweep.stderr.read() or ""
+            text += _said(sweep.stderr.fileno())
             found = list(self._targets(sweep.pid, target)) if done < hits else []
             if not found:
                 continue
@@ -89,7 +89,7 @@ class Hit(Killed):
                     process.send_signal(number)
                 time.sleep(self.order.uniform(0.0, 1.0) if number == signal.SIGSTOP else 0.0)
             done += 1
-        text += sweep.stderr.read() or ""
+        text += _said(sweep.stderr.fileno())
         output, _ = sweep.communicate()
         assert "Traceback" not in text, text
         assert self.all_gone(), f"processes are left: {self.processes()}"
@@ -106,6 +106,15 @@ class Hit(Killed):
                     yield psutil.Process(sweep)
                 elif "harness.runner.server" in child.cmdline():
                     yield from [child] if target == "server" else child.children()
+
+
+def _said(pipe: int) -> str:
+    """What there is to read of a pipe that does not block."""
+    text = b""
+    with suppress(BlockingIOError):
+        while part := os.read(pipe, 1 << 16):
+            text += part
+    return text.decode()
 
 
 SLOWLY = f"""        self.calls += 1
@@ -135,6 +144,9 @@ def once(target: str, name: str, tries: int, seed: int = 259) -> int:
                 print(f"{name} at the {target}, try {done}: {error}", flush=True)
                 for process in hit.processes():
                     process.kill()
+                if not ends:  # what one try leaves is not the next one's
+                    hit.database.unlink(missing_ok=True)
+                    hit.said.clear()
             if done < tries and done // 10 > shown // 10:  # so that something is known if this is broken off
                 print(f"{name} at the {target}: {done} tries so far, {failures} failures", flush=True)
                 shown = done

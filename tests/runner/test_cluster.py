@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from contextlib import ExitStack
+from pathlib import Path
 
 import psutil
 import pytest
@@ -113,11 +114,14 @@ def test_a_scheduler_that_dies_ends_the_sweep_with_a_sentence_and_the_next_does_
 ):
     """It is killed by a run, so that others are done and kept before."""
     monkeypatch.setattr("harness.runner.cluster.CONNECT_TIMEOUT", 3.0)
+    scheduler = str(small / "scheduler")
     plugin(
         "parts",
         f"""
-        if self.calls == 1 and len(os.listdir({str(small / "marks")!r})) == 3:
-            os.kill(int(open({str(small / "scheduler")!r}).read()), signal.SIGKILL)
+        if self.calls == 1 and len(os.listdir({str(small / "marks")!r})) == 3 and os.path.exists({scheduler!r}):
+            process = int(open({scheduler!r}).read())
+            os.remove({scheduler!r})  # at once: a worker may end this run before it leaves its own mark
+            os.kill(process, signal.SIGKILL)
         if self.calls == 1:
             open(f"{small / "marks"}/{{os.getpid()}}", "w").close()
         """,
@@ -125,7 +129,7 @@ def test_a_scheduler_that_dies_ends_the_sweep_with_a_sentence_and_the_next_does_
     (small / "marks").mkdir()
     (small / "parts.yaml").write_text(EXPERIMENT + "engine: {backend: parts, algorithm: native}\n")
     with LocalScheduler(small, workers=1) as cluster:
-        (small / "scheduler").write_text(str(cluster.scheduler.pid))
+        Path(scheduler).write_text(str(cluster.scheduler.pid))
         assert main(["sweep", "parts.yaml", "--db", "parts.db", "--cluster", cluster.address]) == 2
     said = capfd.readouterr().err
     assert "the connection to the scheduler was lost; every finished run is kept" in said

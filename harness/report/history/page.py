@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from harness.measure.metrics import METRICS
 from harness.report.history.history import FEWEST_SWEEPS, MachineHistory, package_changes
+from harness.report.machine import machine_text
 from harness.report.quantity import number, plural, scale
 from harness.report.table import Column, Entry, Table, measured_summary, plain, words
 from harness.report.words import metric_title
@@ -33,11 +34,12 @@ def sweeps_table(machine: MachineHistory) -> Table:
         earlier = sweep
     columns = (
         Column("Sweep", numeric=False), Column("started, UTC", numeric=False), Column("commit", numeric=False),
-        Column("version, and packages that changed", numeric=False), Column("all points together"),
+        Column("version, and packages that changed", numeric=False), Column("drift of the machine"),
     )  # fmt: skip
     note = (
-        "What all points together took, as a multiple of the first sweep. Up to a factor of two from one sweep to the "
-        "next is taken for a drift of the machine, and taken out before steps are looked for."
+        "Drift: what all points together took, as a multiple of the first sweep, up to a factor of two from one sweep "
+        "to the next. It is taken out before steps are looked for. A sweep that shares too few points with those "
+        "before it has none."
     )
     return Table("Sweeps", note, columns, tuple(rows))
 
@@ -63,10 +65,12 @@ def steps_table(machine: MachineHistory) -> Table | None:
     return Table("Steps", "Where a point changed for good, without the drift of the machine.", columns, rows)
 
 
-def points_table(machine: MachineHistory, metric: str) -> Table:
+def points_table(machine: MachineHistory, metric: str) -> Table | None:
     """Every point that two sweeps or more have measured, over the newest of them."""
     shown = machine.sweeps[-_MOST_SWEEPS:]
     points = [point for point in machine.points if len(point.values) > 1]
+    if not points:
+        return None
     unit = scale([found.median for point in points for found in point.values.values()], METRICS[metric].unit)
     rows = tuple(
         (
@@ -92,7 +96,7 @@ def sentences(machines: Sequence[MachineHistory]) -> list[Markup]:
     for machine in machines:
         long = sum(len(point.values) >= FEWEST_SWEEPS for point in machine.points)
         text = Markup("{}: {} over {}, <strong>{}</strong>.").format(
-            machine.fingerprint,
+            machine_text(machine.facts),
             plural(len(machine.points), "point"),
             plural(len(machine.sweeps), "sweep"),
             plural(len(machine.steps), "step") if long else "too few sweeps of any point to tell a step",
