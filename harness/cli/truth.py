@@ -20,7 +20,7 @@ Right is from `lower` to `upper`, give or take --within; or what the engine cann
 outside of the bounds is right, too, if d before `lower` the bodies were no farther apart than the engine's own
 tolerance, which for `own` is 1e-12 of the mean size, and for a backend what `harness list` says. The same goes for a
 pair that never touches and is told to, at the time that is told. That gap is measured by harness.distance,
-which is right to 1e-12 of a size; so much is allowed besides.
+whose rounding, 1e-14 of the mean size, is allowed besides.
 
 NAMES:
   own              this program's engine, harness.time_of_impact

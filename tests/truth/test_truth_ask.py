@@ -143,6 +143,13 @@ def test_published_rows_are_answered_right_by_the_engine(capsys):
     assert len(found) == 11
 
 
+def test_slow_approaches_are_answered_no_farther_apart_than_the_tolerance(capsys):
+    # a gap of 1.6e-12 of a size, as if the tolerance were that, would be 7.7e-9 s before the touch
+    assert main(["truth", "ask", str(PUBLISHED), "--families", "resting", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["backends"][0]["families"]["resting"]
+    assert (found["right"], found["asked"]) == (500, 500)
+
+
 @pytest.mark.slow
 def test_fcl_sees_published_pairs_apart_at_the_lower_bound_and_touching_at_the_upper_one():
     """FCL knows nothing of the proofs, and is asked in other arithmetic."""
