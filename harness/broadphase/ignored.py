@@ -29,6 +29,11 @@ def without(pairs: Pairs, ignored: Pairs) -> Pairs:
     return pairs[kept(pairs, ignored)] if len(ignored) else pairs
 
 
+def asked_about(broad_phase: BroadPhase, ignored: Pairs) -> BroadPhase:
+    """The broad phase as it is if nothing is ignored; else without the ignored pairs."""
+    return WithoutIgnored(broad_phase, ignored) if len(ignored) else broad_phase
+
+
 class WithoutIgnored:
     """A broad phase whose close pairs are those that are not ignored.
 

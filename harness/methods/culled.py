@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from harness.arrays import Floats, Pairs
-from harness.broadphase.ignored import WithoutIgnored
+from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
@@ -124,9 +124,7 @@ class Culled(SteppedMethod):
         return self.scheme.make(scene.enclosing_radii, scene.box, plan.keeps("size_classes"))
 
     def detector(self, scene: Scene, plan: Plan) -> Detector:
-        broad_phase = self.broad_phase(scene, plan)
-        if len(scene.ignored):
-            broad_phase = WithoutIgnored(broad_phase, scene.ignored)
+        broad_phase = asked_about(self.broad_phase(scene, plan), scene.ignored)
         if scene.shape == "sphere":
             return CloseSpheres(broad_phase)
         # only a scene of hulls or meshes needs FCL, and then it is imported

@@ -179,19 +179,6 @@ def hulls_of_size_1(scene: Scene) -> list[Hull]:
     return hulls
 
 
-def hull_of_size_1(scene: Scene) -> Hull:
-    """The one hull that the bodies have in their sizes.
-
-    Raises
-    ------
-    InputError
-        If there is more than one mesh, or each size is given a hull of its own.
-    """
-    if len(scene.meshes) > 1:
-        raise InputError("it can be asked this query of bodies of one mesh only")
-    return hulls_of_size_1(scene)[0]
-
-
 def _all_open(pairs: Pairs, placement: Placement) -> PairVerdicts:
     return np.full(len(pairs), PairVerdict.UNDECIDED, np.int8)
 

@@ -43,12 +43,11 @@ class Native(SteppedMethod):
         return (f"APPROXIMATION: {replaced}",) if replaced else ()
 
     def detector(self, scene: Scene, plan: Plan) -> Detector:
-        return self._loaded(scene)
+        backend = self._loaded(scene)
+        return AllButIgnored(backend, scene.ignored) if len(scene.ignored) else backend
 
     def near_finder(self, scene: Scene, plan: Plan) -> NearFinder:
-        return NativeNearPairs(
-            cast(Distances, self._loaded(scene)), len(scene.bodies), self.within or 0.0, self.name.query
-        )
+        return NativeNearPairs(cast(Distances, self._loaded(scene)), scene, self.within or 0.0, self.name.query)
 
     def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:
         return NativeImpacts(cast(Impacts, self._loaded(scene)), scene)
@@ -76,7 +75,7 @@ class Native(SteppedMethod):
         if query != "collision":
             set_accuracy(backend, self.tolerance)
         backend.load(scene)
-        return AllButIgnored(backend, scene.ignored) if len(scene.ignored) else backend
+        return backend
 
 
 class _Nobody:
@@ -99,7 +98,7 @@ _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 def _ask_nobody(name: MethodName) -> None:
     scene, law, method = two_bodies(name.shape), MotionLaw(0.6, 0.3, "none"), Native(name)
     plan, nobody = method.plan(scene, law), cast(Any, _Nobody())
-    near, impacts = NativeNearPairs(nobody, 2, 1.0), NativeImpacts(nobody, scene)
+    near, impacts = NativeNearPairs(nobody, scene, 1.0), NativeImpacts(nobody, scene)
     for asking in (NearAsking(scene, plan, near, gaps=True), ImpactAsking(scene, plan, impacts)):
         asking.fly(law, traced=True)
 

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 from harness.arrays import Floats, Pairs
 from harness.broadphase.all_pairs import AllPairs
+from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
 from harness.methods.asking import ImpactAsking, NearAsking
 from harness.methods.impact_times import ImpactFinder, KernelImpacts
@@ -72,12 +73,16 @@ class SteppedMethod(Method):
             If the library that it stands on is missing, or cannot hold the scene, or has no such query.
         """
         within, query = self.within or 0.0, self.name.query
-        close_pairs = self.close_pairs_of(scene, plan, near_radii(scene, within))
+        close_pairs = asked_about(self.close_pairs_of(scene, plan, near_radii(scene, within)), scene.ignored)
         return KernelNearPairs(scene, close_pairs, query, within, self.tolerance)
 
     def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:
         """What finds impacts, loaded with the scene; raises as `near_finder` does."""
-        return KernelImpacts(scene, partial(self.close_pairs_of, scene, plan), self.tolerance)
+
+        def make(radii: Floats) -> BroadPhase:
+            return asked_about(self.close_pairs_of(scene, plan, radii), scene.ignored)
+
+        return KernelImpacts(scene, make, self.tolerance)
 
     def decide_detection(self, scene: Scene, decisions: Decisions) -> None:
         """Decide on the stages of detection; without any, nothing of it is known."""
@@ -121,7 +126,8 @@ class SteppedMethod(Method):
 
     def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         if self.name.query != "collision":
-            yield f"{self.name.query} of {self.name.shape}s by {self.name.algorithm}", partial(_ask_frames, self)
+            what = f"{self.name.query} of {self.name.shape}s by {self.name.algorithm}{of_meshes(meshes)}"
+            yield what, partial(_ask_frames, self, meshes)
             return
         shape: Shape = "sphere" if self.name.shape == "sphere" else "hull"
         yield f"frames of {shape}s{of_meshes(meshes)}", partial(_fly_frames, shape, meshes)
@@ -237,9 +243,9 @@ def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
         decisions.take("response", True, why, fixed="hits would not be answered; choose response none for that")
 
 
-def _ask_frames(method: SteppedMethod) -> None:
+def _ask_frames(method: SteppedMethod, meshes: int) -> None:
     """Two frames of two bodies that meet, by the method as it is."""
-    scene, dt = two_bodies(method.name.shape), 0.3
+    scene, dt = two_bodies(method.name.shape, meshes), 0.3
     law = MotionLaw(2 * dt, dt, "none")
     method.load(scene, method.plan(scene, law)).fly(law, traced=True)
 

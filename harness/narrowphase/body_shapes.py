@@ -83,7 +83,7 @@ def hulls_of_bodies(maps: Sequence[SupportMap], mesh_of: Ints) -> Hulls:
     parts = [(one.vertices, one.start, one.candidates) for one in maps]
     vertices, start, candidates = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
     sides = np.array([one.side for one in maps], np.int64)
-    return SupportMaps(vertices, start, candidates, _begins(parts), sides, mesh_of)
+    return SupportMaps(vertices, start, candidates, begins_of(parts), sides, mesh_of)
 
 
 def trees_of_bodies(trees: Sequence[TriangleTree], mesh_of: Ints) -> Surfaces:
@@ -91,7 +91,7 @@ def trees_of_bodies(trees: Sequence[TriangleTree], mesh_of: Ints) -> Surfaces:
     if len(trees) == 1:
         return trees[0]
     discs, right, parent, corners = (np.concatenate(arrays) for arrays in zip(*trees, strict=True))
-    begins = _begins([(tree.discs, tree.corners) for tree in trees])
+    begins = begins_of([(tree.discs, tree.corners) for tree in trees])
     return TriangleTrees(discs, right, parent, corners, begins, mesh_of)
 
 
@@ -104,7 +104,7 @@ def shapes_of_bodies(shapes: Sequence[MeshShape], mesh_of: Ints) -> Shapes:
     return MeshShapes(hulls, trees, max(one.radius for one in shapes))
 
 
-def _begins(parts: Sequence[tuple[NDArray[Any], ...]]) -> Ints:
+def begins_of(parts: Sequence[tuple[NDArray[Any], ...]]) -> Ints:
     """Where the arrays of each mesh begin, and where the last ones end."""
     lengths = np.array([[len(array) for array in arrays] for arrays in parts], np.int64)
     return np.concatenate([np.zeros((1, lengths.shape[1]), np.int64), np.cumsum(lengths, axis=0)])

@@ -13,6 +13,7 @@ import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.kernel import inner, kernel
+from harness.narrowphase.body_shapes import Hulls, Shapes, hull_of, shape_of
 from harness.narrowphase.contact_end import ContactEnd, end_of_hull_contact, end_of_mesh_contact
 from harness.narrowphase.contact_intervals import Onset, next_mesh_contact
 from harness.narrowphase.frame_flights import (
@@ -31,6 +32,7 @@ from harness.narrowphase.support import SupportMap
 from harness.narrowphase.vectors import dot, minus
 from harness.narrowphase.verdicts import SearchVerdict
 
+Solids = TypeVar("Solids")
 Shape = TypeVar("Shape")
 
 # By how much the tolerance of a search that was given up is raised before it is done again, and how many are done.
@@ -99,30 +101,49 @@ class Followed(NamedTuple):
 @kernel
 def sphere_pair_onsets(asked: PairsAsked, flights: FrameFlights, found: Onsets) -> Count:
     """All onsets of spheres."""
-    return pair_onsets(asked, flights, 0, found, spheres_in_piece)
+    return pair_onsets(asked, flights, 0, found, no_solid, spheres_in_piece)
 
 
 @kernel
-def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hull: SupportMap, found: Onsets) -> Count:
-    """All onsets of bodies that have the same hull."""
-    return pair_onsets(asked, flights, hull, found, hulls_in_piece)
+def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hulls: Hulls, found: Onsets) -> Count:
+    """All onsets of bodies that have these hulls."""
+    return pair_onsets(asked, flights, hulls, found, hull_in, hulls_in_piece)
 
 
 @kernel
-def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shape: MeshShape, found: Onsets) -> Count:
-    """All onsets of bodies that have the same surface."""
-    return pair_onsets(asked, flights, shape, found, surfaces_in_piece)
+def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shapes: Shapes, found: Onsets) -> Count:
+    """All onsets of bodies that have these surfaces."""
+    return pair_onsets(asked, flights, shapes, found, surface_in, surfaces_in_piece)
+
+
+@inner
+def no_solid(nothing: int, body: int) -> int:
+    """What a sphere has of a solid."""
+    return nothing
+
+
+@inner
+def hull_in(hulls: Hulls, body: int) -> SupportMap:
+    """The hull of a body."""
+    return hull_of(hulls, body)
+
+
+@inner
+def surface_in(shapes: Shapes, body: int) -> MeshShape:
+    """The surface of a body."""
+    return shape_of(shapes, body)
 
 
 @inner
 def pair_onsets(
     asked: PairsAsked,
     flights: FrameFlights,
-    shape: Shape,
+    solids: Solids,
     found: Onsets,
-    in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+    solid_of: Callable[[Solids, int], Shape],
+    in_piece: Callable[[Shape, Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
 ) -> Count:
-    """The onsets of all pairs, in order, given what follows a pair through a straight piece."""
+    """The onsets of all pairs, in order, given what a body has of the solids, and what follows a pair on its way."""
     count, given_up, place = 0, 0, 0
     pair = pair_flight()
     for k in range(len(asked.pairs)):
@@ -134,12 +155,13 @@ def pair_onsets(
         flight_of_pair(flights, i, j, pair)
         now = 0.0
         followed = Followed(touches, count, True)
+        one, other = solid_of(solids, i), solid_of(solids, j)
         while True:
             wait = min(until_fold(flights, i, j, pair), flights.duration - now)
             a, b = motion_in(flights, i, pair, 0, now), motion_in(flights, j, pair, 1, now)
             tolerance = asked.tolerance * 0.5 * (a.size + b.size)
             piece = Piece(now, wait, tolerance, asked.first and now == 0.0)
-            followed = again_if_unknown(shape, a, b, piece, followed, k, found, in_piece)
+            followed = again_if_unknown(one, other, a, b, piece, followed, k, found, in_piece)
             given_up += not followed.known
             if now + wait >= flights.duration:
                 break
@@ -152,14 +174,15 @@ def pair_onsets(
 
 @inner
 def again_if_unknown(
-    shape: Shape,
+    one: Shape,
+    other: Shape,
     a: Motion,
     b: Motion,
     piece: Piece,
     before: Followed,
     k: int,
     found: Onsets,
-    in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+    in_piece: Callable[[Shape, Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
 ) -> Followed:
     """A pair through a piece, and again at a larger tolerance where a search is given up.
 
@@ -168,7 +191,7 @@ def again_if_unknown(
     """
     after = Followed(before.touches, before.onsets, True)
     for _ in range(MOST_SEARCHES):
-        after = in_piece(shape, a, b, piece, before, k, found)
+        after = in_piece(one, other, a, b, piece, before, k, found)
         if after.known:
             break
         piece = Piece(piece.begin, piece.length, COARSER * piece.tolerance, piece.settled)
@@ -177,7 +200,7 @@ def again_if_unknown(
 
 @kernel
 def spheres_in_piece(
-    nothing: int, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    nothing: int, neither: int, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
 ) -> Followed:
     """Spheres touch once in a straight piece, from a root of a quadratic to the next."""
     gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
@@ -194,18 +217,18 @@ def spheres_in_piece(
 
 @kernel
 def hulls_in_piece(
-    hull: SupportMap, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    one: SupportMap, other: SupportMap, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
 ) -> Followed:
     """Hulls, from contact to contact."""
-    return solids_in_piece(hull, a, b, piece, before, k, found, next_hull_contact, end_of_hull_contact)
+    return solids_in_piece(one, other, a, b, piece, before, k, found, next_hull_contact, end_of_hull_contact)
 
 
 @kernel
 def surfaces_in_piece(
-    shape: MeshShape, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    one: MeshShape, other: MeshShape, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
 ) -> Followed:
     """Surfaces, from contact to contact."""
-    return solids_in_piece(shape, a, b, piece, before, k, found, next_mesh_contact, end_of_mesh_contact)
+    return solids_in_piece(one, other, a, b, piece, before, k, found, next_mesh_contact, end_of_mesh_contact)
 
 
 @kernel
@@ -219,7 +242,8 @@ def next_hull_contact(
 
 @inner
 def solids_in_piece(
-    shape: Shape,
+    one: Shape,
+    other: Shape,
     a: Motion,
     b: Motion,
     piece: Piece,
@@ -233,12 +257,12 @@ def solids_in_piece(
     now, touches, count, known = 0.0, before.touches, before.onsets, True
     while known:
         if touches:
-            ending = end_of_contact(shape, shape, a, b, now, piece.length, piece.tolerance)
+            ending = end_of_contact(one, other, a, b, now, piece.length, piece.tolerance)
             known = ending.verdict != SearchVerdict.STALLED
             if ending.verdict != SearchVerdict.FOUND:
                 break
             now, touches = ending.time, False
-        onset = next_contact(shape, shape, a, b, now, piece.length, piece.tolerance)
+        onset = next_contact(one, other, a, b, now, piece.length, piece.tolerance)
         known = onset.verdict != SearchVerdict.STALLED
         if onset.verdict != SearchVerdict.FOUND:
             break

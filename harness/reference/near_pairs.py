@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from harness.arrays import Floats, Ints, Pairs
+from harness.broadphase.ignored import without
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.reference.body_gaps import GapBounds, sphere_bounds, surface_bounds
@@ -124,4 +125,4 @@ def _close(scene: Scene, positions: Floats, within: float) -> Pairs:
     distances = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
     near = distances <= (radii[pairs[:, 0]] + radii[pairs[:, 1]] + within) * (1.0 + _SLACK)
     found: Pairs = pairs[near][np.lexsort((pairs[near][:, 1], pairs[near][:, 0]))]
-    return found
+    return without(found, scene.ignored)

@@ -51,7 +51,7 @@ def solid_contacts(scene: Scene, duration: float, tolerance: float) -> Contacts:
     InputError
         If a contact cannot be followed, even at a larger tolerance.
     """
-    encounters = sphere_contacts(scene.bodies, scene.box, duration, margin=ENLARGED)
+    encounters = sphere_contacts(scene.bodies, scene.box, duration, margin=ENLARGED).encounters_without(scene.ignored)
     search = _Search(scene, tolerance)
     windows = zip(encounters.pairs.tolist(), encounters.begin.tolist(), encounters.end.tolist(), strict=True)
     found = [search.within(i, j, begin, end) for (i, j), begin, end in windows]

@@ -120,8 +120,8 @@ def casts(monkeypatch):
             return 0.5
 
         monkeypatch.setattr(rapier_casts, "_cast", cast)
-        shapes = {1.0: rapier_casts.ShapeData(0.5, [], [])}
-        return rapier_casts.Casts(shapes, np.ones(3), 1.0, longest=0.4)
+        shapes = {(0, 1.0): rapier_casts.ShapeData(0.5, [], [])}
+        return rapier_casts.Casts(shapes, [(0, 1.0)] * 3, 1.0, longest=0.4)
 
     return make
 
