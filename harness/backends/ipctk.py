@@ -113,7 +113,7 @@ class Ipctk:
         )
 
     def _mesh(self, i: int, j: int) -> ipctk.CollisionMesh:
-        """The two bodies as one mesh, which does not collide with itself but for them; one for all pairs of the same two solids."""
+        """The two bodies as one mesh, which does not collide with itself but for them; one for pairs alike."""
         solids = self._solids[i], self._solids[j]
         if solids not in self._meshes:
             vertices = [self._vertices[solid] for solid in solids]

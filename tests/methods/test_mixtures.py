@@ -60,7 +60,7 @@ def test_all_methods_find_the_same_pairs_of_several_meshes_and_the_judge_agrees(
 
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_a_flight_of_several_meshes_is_the_same_by_every_method(shape):
-    scene, law = mixture(shape, 5, count=10), MotionLaw(0.5, 0.05, "reflect")
+    scene, law = mixture(shape, 5, count=10), MotionLaw(1.5, 0.05, "reflect")
     digests = {}
     for name in ("fcl", "fcl/grid", "fcl/sap", "fcl/tree"):
         method = method_of(MethodName.read(name, shape))
@@ -72,7 +72,7 @@ def test_a_flight_of_several_meshes_is_the_same_by_every_method(shape):
 
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_hits_of_several_meshes_are_predicted_where_frames_see_them(shape):
-    scene, law = mixture(shape, 6, count=8), MotionLaw(0.6, 1e-3, "none")
+    scene, law = mixture(shape, 6, count=8), MotionLaw(1.2, 1e-3, "none")
     onsets = {}
     for name in ("fcl/grid", "fcl/predictive"):
         method = method_of(MethodName.read(name, shape))
