@@ -77,7 +77,7 @@ BodySize = Annotated[
 class BodySpec(Declared):
     """One body, given in full."""
 
-    position: Vector | None = Field(None, description="centre [x, y, z], m; needed unless motion has poses")
+    position: Vector = Field(description="centre [x, y, z], m")
     mesh: Text | None = Field(None, description="its own mesh, in place of that of the scene")
     velocity: Vector = Field((0.0, 0.0, 0.0), description="[x, y, z], m/s")
     spin: Vector = Field((0.0, 0.0, 0.0), description="angular velocity [x, y, z] in the world frame, rad/s")
