@@ -119,5 +119,5 @@ def _reference_events(reference: Point, files: SceneFiles, fly: Fly) -> Referenc
 def _key(reference: Point, files: SceneFiles, **more: float) -> str:
     """Names the reference by all that it follows from; the time step is none of it, but where `more` has it."""
     parameters = {leaf: value for leaf, value in reference.parameters.items() if leaf != "dt"}
-    content = {**parameters, **more, "files": files.digests, "sources": sources_hash()}
+    content = {**parameters, **more, "files": files.identities, "sources": sources_hash()}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

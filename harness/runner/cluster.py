@@ -121,10 +121,10 @@ class Cluster:
     def _submit(self, job: Job, meshes: Opened, contents: dict[str, Future]) -> Future:
         task, files = task_of(job.experiment, job.point, meshes, recorded=job.recorded, on_demand=job.on_demand)
         for part in files.parts:
-            if part.digest not in contents:
+            if part.identity not in contents:
                 # as a task, not as scattered data: it can be made again when the worker that holds it dies
-                contents[part.digest] = self._client.submit(_itself, part, key=f"file-{part.digest}")
-        return self._client.submit(run_here, task, *(contents[digest] for digest in files.digests), pure=False)
+                contents[part.identity] = self._client.submit(_itself, part, key=f"file-{part.identity}")
+        return self._client.submit(run_here, task, *(contents[identity] for identity in files.identities), pure=False)
 
     def _finished(self) -> list[Future]:
         """Wait until some runs have ended; none after a while, so that one can look around."""

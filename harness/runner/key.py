@@ -17,7 +17,7 @@ def point_key(point: Point, files: SceneFiles) -> str:
     """Hash of the resolved scene, motion, engine and reference, its files' contents, and this package's sources."""
     parameters = dict(point.parameters)
     # a mesh is what is in its file, whatever that is called
-    digests = dict(zip(point.scene.mesh_names, files.digests, strict=False))
+    digests = dict(zip(point.scene.mesh_names, files.identities, strict=False))
     parameters["mesh"] = _renamed(parameters["mesh"], digests)
     bodies = parameters["bodies"] or ()
     parameters["bodies"] = [{**body, "mesh": _renamed(body["mesh"], digests)} for body in bodies]

@@ -56,11 +56,11 @@ def _serve(channel: Connection) -> None:
     while True:
         received = channel.recv()
         if isinstance(received, Mesh | RecordedPoses):
-            held[received.digest] = received
+            held[received.identity] = received
             continue
         _warm_up(received)
         channel.send("warm")
-        report = run_isolated(received, SceneFiles.of(tuple(held[digest] for digest in received.files)), channel)
+        report = run_isolated(received, SceneFiles.of(tuple(held[identity] for identity in received.files)), channel)
         if report is None:
             return
         channel.send(report)

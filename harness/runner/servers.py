@@ -138,7 +138,7 @@ def task_of(
     """
     files, limits = files_of(experiment, point, meshes), experiment.measure
     on_demand = on_demand_of(experiment) if on_demand is None else on_demand
-    task = Task(point, files.digests, limits.timeout, limits.memory, traced, pinned, recorded, on_demand)
+    task = Task(point, files.identities, limits.timeout, limits.memory, traced, pinned, recorded, on_demand)
     return task, files
 
 
@@ -208,9 +208,9 @@ class _Server:
         """The report of a task; None if the server has died, or is silent."""
         try:
             for part in files.parts:
-                if part.digest not in self._sent:
+                if part.identity not in self._sent:
                     self._channel.send(part)
-                    self._sent.add(part.digest)
+                    self._sent.add(part.identity)
             self._channel.send(task)
             self._receive(_WARM_UP)
             report: Report = self._receive(task.timeout + _BEYOND)

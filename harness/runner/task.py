@@ -19,7 +19,7 @@ class Task:
     Parameters
     ----------
     point : Point
-    files : digests of the files that its scene names, in the order of `SceneFiles.parts`
+    files : identities of the files that its scene names, in the order of `SceneFiles.parts`
     timeout : s of elapsed time
     memory : B that it may use
     traced : keep every hit

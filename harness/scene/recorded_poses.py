@@ -32,6 +32,11 @@ class RecordedPoses:
     quaternions: Floats
     digest: str
 
+    @property
+    def identity(self) -> str:
+        """By which two recordings are the same."""
+        return self.digest
+
     def __len__(self) -> int:
         """How many times there are."""
         return len(self.time)

@@ -31,9 +31,9 @@ class SceneFiles(NamedTuple):
         return self.meshes if self.poses is None else (*self.meshes, self.poses)
 
     @property
-    def digests(self) -> tuple[str, ...]:
+    def identities(self) -> tuple[str, ...]:
         """By which they are the same as others."""
-        return tuple(part.digest for part in self.parts)
+        return tuple(part.identity for part in self.parts)
 
     @classmethod
     def of(cls, parts: tuple[Mesh | RecordedPoses, ...]) -> SceneFiles:
