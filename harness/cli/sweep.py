@@ -71,7 +71,9 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.store.database import Database
 
     selection = _selection(arguments)
-    experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
+    experiments, meshes = prepare(
+        arguments.paths, overrides_of(arguments), lambda line: print(line, file=sys.stderr)
+    )
     chosen = [experiment for experiment in experiments if arguments.long or experiment.measure.tier == "default"]
     for left in [experiment.name for experiment in experiments if experiment not in chosen]:
         print(f"{left}: left out, since it is `tier: long`; --long runs it", file=sys.stderr)
