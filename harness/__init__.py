@@ -110,7 +110,8 @@ def time_of_impact(a: Body, b: Body, until: float, tolerance: float = 1e-9) -> f
     ----------
     a, b : Body of the same shape; one with arrays of motions is asked about for each of them
     until : s, when the search ends; inf for never
-    tolerance : gap, of the mean size of both, at which hulls and surfaces count as touching
+    tolerance : gap, of the mean size of both, at which hulls and surfaces count as touching; less than 1e-12 counts as
+        1e-12, nearer than which rounding decides
 
     Returns
     -------

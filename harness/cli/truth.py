@@ -8,6 +8,7 @@ touch or tell it late.
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 DEFAULT_BUDGET = 7200.0
 
@@ -20,7 +21,7 @@ Right is from `lower` to `upper`, give or take --within; or what the engine cann
 outside of the bounds is right, too, if d before `lower` the bodies were no farther apart than the engine's own
 tolerance, which for `own` is 1e-12 of the mean size, and for a backend what `harness list` says. The same goes for a
 pair that never touches and is told to, at the time that is told. That gap is measured by harness.distance,
-which is right to 1e-12 of a size; so much is allowed besides.
+whose rounding, 1e-14 of the mean size, is allowed besides.
 
 NAMES:
   own              this program's engine, harness.time_of_impact
@@ -80,6 +81,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="60",
         help="that a case may take; its process is then ended (default: 60)",
     )
+    ask.add_argument("--db", metavar="FILE", help="keep the answers in a database, for `harness report` to show")
     ask.add_argument("--json", action="store_true", help="one JSON document on standard output")
 
 
@@ -132,12 +134,14 @@ def _ask(arguments: argparse.Namespace) -> int:
     from pathlib import Path
 
     from harness.errors import InputError
-    from harness.truth.answer_table import document, table
+    from harness.truth.answer_table import document, documents, table
     from harness.truth.answerers import questions
     from harness.truth.ask import ask, chosen
     from harness.truth.folder import read_set
 
     asked_of = questions(arguments.backends, arguments.dt)
+    if arguments.db is not None:
+        _open(arguments.db).close()  # before the work, not after it
     given = read_set(Path(arguments.folder))
     there = dict.fromkeys(given.cases.families.tolist())
     if strangers := [name for name in arguments.families if name not in there]:
@@ -147,11 +151,33 @@ def _ask(arguments: argparse.Namespace) -> int:
         question: ask(given, question, rows, arguments.within, arguments.timeout, _progress)
         for question in dict.fromkeys(asked_of)
     }
+    if arguments.db is not None:
+        _keep(documents(asked, arguments.folder, arguments.within, arguments.every), arguments.folder, arguments.db)
     if arguments.json:
         print(json.dumps(document(asked, arguments.folder, arguments.within, arguments.every), allow_nan=False))
     else:
         print(table(asked))
     return 0
+
+
+def _open(path: str) -> Any:
+    from harness.store.database import Database
+
+    return Database.open(path)
+
+
+def _keep(found: dict[str, dict[str, Any]], folder: str, database: str) -> None:
+    """Each answerer's answers, in place of earlier ones of it about a set of this name."""
+    import shlex
+    import sys
+    from pathlib import Path
+
+    path = Path(folder).resolve()
+    name = f"{path.parent.name}/{path.name}"
+    with _open(database) as kept:
+        for label, told in found.items():
+            command = shlex.join(["harness", *sys.argv[1:]])
+            kept.add_comparison(command, name, (label, "proven times"), f"{name} {label}", told)
 
 
 def _words(text: str) -> list[str]:

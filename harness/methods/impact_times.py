@@ -12,7 +12,7 @@ from harness.backends.protocol import ImpactTimes
 from harness.broadphase.pairs import BroadPhase
 from harness.methods.narrow_phase import hull_of_size_1
 from harness.narrowphase.frame_flights import FrameFlights
-from harness.narrowphase.gjk import MARGIN
+from harness.narrowphase.gjk import LEAST_GAP
 from harness.narrowphase.impact_pairs import (
     Count,
     Onsets,
@@ -28,8 +28,6 @@ from harness.scene.scene import Scene
 
 # Relative: by how much more than their way spheres are grown, so that rounding loses no pair.
 SLACK = 1e-9
-# Of the sum of two sizes: the gap at which searches take bodies for touching, at the least.
-LEAST_GAP = 8.0 * MARGIN
 
 
 class FrameMotion(NamedTuple):

@@ -15,7 +15,7 @@ import numpy as np
 
 from harness.kernel import kernel, strict_step
 from harness.narrowphase.free_flight import Motion, orientation, place, turning_speed
-from harness.narrowphase.gjk import COLD_START, MARGIN, WarmStart, hull_distance, relative_pose
+from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hull_distance, relative_pose
 from harness.narrowphase.support import SupportMap, support
 from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, scaled, turned, turned_back
 from harness.narrowphase.verdicts import SearchVerdict
@@ -98,7 +98,7 @@ def time_of_impact(
     hull_a, hull_b : SupportMap
     a, b : Motion
     begin, end : s, the window; the end may be inf
-    tolerance : m, the gap at which hulls count as touching
+    tolerance : m, the gap at which hulls count as touching; LEAST_GAP of the sizes counts, if it is less
     start : WarmStart of an earlier search for this pair, or COLD_START
 
     Returns
@@ -108,7 +108,7 @@ def time_of_impact(
         hulls that overlap at the beginning, at the beginning.
     """
     margin = MARGIN * (a.size + b.size)
-    near = max(tolerance, 8.0 * margin)
+    near = max(tolerance, LEAST_GAP * (a.size + b.size))
     aim = near / 4.0  # a little before contact, where the axis of the gap can still be told from rounding
     time, axis, gap = begin, (0.0, 0.0, 0.0), 0.0
     for step in range(1, MOST_STEPS + 1):

@@ -16,7 +16,7 @@ from harness.arrays import Ints
 from harness.kernel import inner, kernel
 from harness.narrowphase.crossing_duration import longest_crossing
 from harness.narrowphase.free_flight import Motion, RelativeMotion, fastest_passing, relative_motion, seen_at
-from harness.narrowphase.gjk import COLD_START, MARGIN, WarmStart, hull_distance
+from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hull_distance
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.overlap_duration import overlap_lasts
 from harness.narrowphase.support import SupportMap
@@ -133,7 +133,7 @@ def end_of_contact(
     memory: Memory,
 ) -> ContactEnd:
     """The end of a contact of hulls or surfaces, given what shows how firmly they touch."""
-    near = ENDING_GAP * max(tolerance, 8.0 * MARGIN * (a.size + b.size))
+    near = ENDING_GAP * max(tolerance, LEAST_GAP * (a.size + b.size))
     a, b = seen_at(a, b, begin)
     speed, rest, now = fastest_passing(a, b), end - begin, 0.0
     for step in range(1, MOST_STEPS + 1):

@@ -33,6 +33,8 @@ from harness.narrowphase.verdicts import PairVerdict
 # Of the sum of the sizes: the gap or the overlap that a certificate must show. Turning and placing two vertices of
 # close bodies rounds by less than a tenth of it.
 MARGIN = 1e-13
+# Of the sum of the sizes: the gap down to which searches for an impact come; nearer, the axis of the gap is rounding.
+LEAST_GAP = 5.0 * MARGIN
 
 # Relative distance between the two bounds at which the walk ends; it mostly ends earlier, at a vertex seen before.
 PRECISION = 1e-14

@@ -18,7 +18,7 @@ import numpy as np
 from harness.kernel import kernel
 from harness.narrowphase.advancement import time_of_impact
 from harness.narrowphase.free_flight import Motion, place, seen_at
-from harness.narrowphase.gjk import COLD_START, MARGIN, WarmStart
+from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart
 from harness.narrowphase.motion_bounds import (
     Flight,
     flight_of,
@@ -143,7 +143,7 @@ def time_of_mesh_impact(
     shape_a, shape_b : MeshShape
     a, b : Motion
     begin, end : s, the window; the end may be inf
-    tolerance : m, the gap at which surfaces count as touching
+    tolerance : m, the gap at which surfaces count as touching; LEAST_GAP of the sizes counts, if it is less
     start : MeshWarmStart of an earlier search for this pair, or MESH_COLD_START
 
     Returns
@@ -180,8 +180,7 @@ def first_touch(
     trees: Trees, a: Motion, b: Motion, begin: float, end: float, tolerance: float, leaves: NodePair
 ) -> FirstTouch:
     """Search the trees of two bodies as `seen_at` gives them; the leaves are those to look at first, if known."""
-    margin = MARGIN * (a.size + b.size)
-    near = max(tolerance, 8.0 * margin)
+    near = max(tolerance, LEAST_GAP * (a.size + b.size))
     # Steps end a little before contact, where the axis of the gap can still be told from rounding.
     flight = flight_of(a, b, near / 4.0)
     stack, queue = np.empty((DEPTH, 2), np.int64), node_queue()

@@ -19,7 +19,8 @@ from harness.report.family import Family
 from harness.report.stability.matrix import Matrix, matrix
 from harness.report.sweeps.difference import Difference
 from harness.report.sweeps.page import newest_difference
-from harness.store.records import ExperimentRecord
+from harness.report.truth import TruthResults
+from harness.store.records import ComparisonRecord, ExperimentRecord
 from harness.store.tables import comparisons, conditions, controls, experiments, machines, runs
 
 
@@ -67,9 +68,18 @@ class Results:
         return Family(lambda: [(page.record, page.measured) for page in self.pages])
 
     @cached_property
+    def _compared(self) -> list[ComparisonRecord]:
+        return comparisons(self.database)
+
+    @cached_property
     def compared(self) -> Comparisons:
         """What was found of backends on the same poses."""
-        return Comparisons(newest(comparisons(self.database)))
+        return Comparisons(newest([record for record in self._compared if "truth" not in record.document]))
+
+    @cached_property
+    def asked(self) -> TruthResults:
+        """What engines answered to sets of cases with proven times of impact."""
+        return TruthResults([record for record in self._compared if "truth" in record.document])
 
     @cached_property
     def accuracy(self) -> list[ExperimentAccuracy]:

@@ -1,12 +1,14 @@
 """The warm servers of a sweep, one a backend, started when first needed and ended with it.
 
 A server that dies, or is silent for longer than its run may take, is ended with all that it has started, and its run is
-done once more by a new one: whatever befell the server, it was most likely not this run's doing.
+done once more by a new one: whatever befell the server, it was most likely not this run's doing. One that was killed
+from outside, as by a system that runs out of memory, says nothing of the run at all, which is tried more often.
 """
 
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import struct
 import subprocess
@@ -40,6 +42,9 @@ _START, _WARM_UP, _BEYOND, _MESSAGE = 300.0, 900.0, 60.0, 60
 _IMPORT = 60.0  # s that importing a backend may take, where its runs may take less: that is no part of any of them
 _LAST = 10.0  # s for the end of what is killed
 _TRIES = 2
+_TRIES_IF_KILLED = 4
+# What ends a process from outside: the system that runs out of memory, or a watch over the memory that asks first.
+_FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM)
 # In the environment of a server, and so of all that it starts: by it that is found, wherever it has gone to.
 _MARK = "HARNESS_SERVER"
 
@@ -82,32 +87,41 @@ class Servers:
         """
         backend = task.point.engine.backend
         interruptions = self._interruptions
-        for tried in range(1, _TRIES + 1):
+        ending: Ending | None = None
+        for tried in range(1, _TRIES_IF_KILLED + 1):
             if backend in self._broken:
                 return self._broken[backend]
-            report = self._try(backend, task, mesh, last=tried == _TRIES)
+            report, ending = self._try(backend, task, mesh, tried)
             if report is not None:
                 return report
-            if self._interruptions > interruptions:
+            if self._interruptions > interruptions or _enough(tried, ending):
                 break
-        return Report("crashed", f'the server of backend "{backend}" ended unexpectedly')
+        how = ending.instead_of("a report") if ending is not None and ending.code else "gave no report"
+        return Report("crashed", f'the server of backend "{backend}" {how}')
 
-    def _try(self, backend: str, task: Task, mesh: Mesh | None, *, last: bool) -> Report | None:
-        """The report of a task; None if the server died over it."""
+    def _try(self, backend: str, task: Task, mesh: Mesh | None, tried: int) -> tuple[Report | None, Ending | None]:
+        """The report of a task; without one, how the server ended, if by itself, that died or was silent over it."""
         if backend not in self._servers:
             server = _Server(backend)
             self._servers[backend] = server
             broken = server.start(task.timeout)
             if broken is not None:
                 self._servers.pop(backend).close()
-                if broken.status == "crashed" and not last:  # something may have ended it from outside
-                    return None
+                if broken.status == "crashed" and not _enough(tried, server.ending):
+                    return None, server.ending
                 self._broken[backend] = broken
-                return broken
-        report = self._servers[backend].run(task, mesh)
+                return broken, server.ending
+        server = self._servers[backend]
+        report = server.run(task, mesh)
         if report is None:
             self._servers.pop(backend).close()
-        return report
+        return report, server.ending
+
+
+def _enough(tries: int, ending: Ending | None) -> bool:
+    """Whether a run is given up after so many tries, of which the last ended its server so."""
+    killed = ending is not None and ending.signal in _FROM_OUTSIDE
+    return tries >= (_TRIES_IF_KILLED if killed else _TRIES)
 
 
 def task_of(
@@ -167,6 +181,8 @@ class _Server:
         self._channel: Connection = Connection(ours.detach())
         self._sent: set[str] = set()
         self._ready = False
+        self._killed_here = False
+        self.ending: Ending | None = None  # if that was not by `close`
 
     def start(self, timeout: float) -> Report | None:
         """Wait until it is ready to run; a report where its backend keeps it from that.
@@ -183,7 +199,9 @@ class _Server:
             except TimeoutError:
                 return Report("timeout", f"{importing} did not end within {max(timeout, _IMPORT):g} s")
         except (EOFError, OSError):
-            return Report("crashed", f"{importing} {self._end()}")
+            self._end()
+            how = "did not come to its end" if self.ending is None else f"ended its process with {self.ending}"
+            return Report("crashed", f"{importing} {how}")
         self._ready = True
         return None
 
@@ -209,9 +227,8 @@ class _Server:
         """End the server and the run that it may have in flight."""
         self._channel.close()
         if self._ready:  # else it has no run to end, and may hang
-            with suppress(subprocess.TimeoutExpired):
-                self._process.wait(timeout=5)
-        if self._process.poll() != 0:
+            self._await_end(5.0)
+        if self.ending != Ending(0):
             self._end()
 
     def _receive(self, within: float) -> Any:
@@ -230,11 +247,16 @@ class _Server:
                 raise TimeoutError
         return self._channel.recv()
 
-    def _end(self) -> str:
-        """End the process and all that it has started; how it ended, if it did so by itself."""
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(timeout=1)
-        how = _ending(self._process.poll())
+    def _await_end(self, within: float) -> None:
+        """Give the process so many seconds to end by itself."""
+        if not self._killed_here:
+            with suppress(subprocess.TimeoutExpired):
+                self.ending = Ending(self._process.wait(within))
+
+    def _end(self) -> None:
+        """End the process and all that it has started."""
+        self._await_end(1.0)
+        self._killed_here = True
         self._process.kill()
         self._process.wait()
         deadline = monotonic() + _LAST
@@ -243,13 +265,6 @@ class _Server:
                 with suppress(psutil.Error):
                     process.kill()
             psutil.wait_procs(left, timeout=0.1)
-        return how
-
-
-def _ending(code: int | None) -> str:
-    if code is None:
-        return "did not come to its end"
-    return f"ended its process with {Ending(code)}"
 
 
 def _marked(mark: str) -> list[psutil.Process]:

@@ -8,9 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from harness.backends.registry import packages
 from harness.backends.statement import missing
@@ -35,6 +33,9 @@ from harness.store.database import Database
 from harness.store.history import History
 from harness.store.records import PointRow, RunRecord, VerdictKind, VerdictRow
 from harness.store.tables import controls, run_records, run_table, runs
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Meshes = Mapping[Path, Mesh]
 

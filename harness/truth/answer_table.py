@@ -36,22 +36,33 @@ def table(asked: Asked) -> str:
 
 def document(asked: Asked, folder: str, within: float, every: int) -> dict[str, Any]:
     """For JSON: times in s, and what of the machine they depend on."""
+    asking = _asking(folder, within, every)
+    return asking | {"backends": [_answers(question, verdicts) for question, verdicts in asked.items()]}
+
+
+def documents(asked: Asked, folder: str, within: float, every: int) -> dict[str, dict[str, Any]]:
+    """What is kept in a database, by who was asked."""
+    asking = _asking(folder, within, every)
+    return {question.label: {"truth": asking | _answers(question, verdicts)} for question, verdicts in asked.items()}
+
+
+def _asking(folder: str, within: float, every: int) -> dict[str, Any]:
     return {
         "set": folder,
         "within": within,
         "every": every,
         "commit": source_commit(),
         "versions": package_versions(packages()),
-        "backends": [
-            {
-                "backend": question.name,
-                "dt": question.dt or None,
-                "problem": verdicts.problem or None,
-                "failures": verdicts.failures,
-                "families": {family: count.document() for family, count in verdicts.named().items()},
-            }
-            for question, verdicts in asked.items()
-        ],
+    }
+
+
+def _answers(question: Question, verdicts: Verdicts) -> dict[str, Any]:
+    return {
+        "backend": question.name,
+        "dt": question.dt or None,
+        "problem": verdicts.problem or None,
+        "failures": verdicts.failures,
+        "families": {family: count.document() for family, count in verdicts.named().items()},
     }
 
 

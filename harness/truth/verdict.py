@@ -16,7 +16,7 @@ from harness.truth.cases import Cases
 WITHIN = 1e-9
 """s by which a time may be out of its bounds."""
 
-_MEASURED = 1e-12  # of the mean size, to which `distance` is right
+_ROUNDING = 1e-14  # of the mean size: many times what `distance` rounds by
 
 Verdict = Literal["right", "missed", "late", "early", "false", "failed"]
 VERDICTS: tuple[Verdict, ...] = ("right", "missed", "late", "early", "false", "failed")
@@ -128,4 +128,4 @@ class Verdicts:
         if time < 0.0:
             return False
         a, b = self._scenes.bodies(row, time)
-        return bool(distance(a, b).gap <= tolerance + _MEASURED * (a.size + b.size) / 2.0)
+        return bool(distance(a, b).gap <= tolerance + _ROUNDING * (a.size + b.size) / 2.0)

@@ -71,12 +71,41 @@ def test_a_server_that_is_stopped_for_good_is_given_up(once, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_server_whose_backend_kills_it_every_time_costs_two_tries(spheres, plugin):
-    plugin("murders", "os.kill(os.getppid(), 9); time.sleep(60)")
+@pytest.mark.parametrize(
+    ("number", "tries", "how"),
+    [
+        ("SIGKILL", 4, "killed by the system (signal 9), most likely because memory ran out"),
+        ("SIGSEGV", 2, "ended by signal 11 (SIGSEGV)"),
+    ],
+)
+def test_a_server_that_is_killed_from_outside_says_less_of_its_run_than_one_that_crashes(
+    spheres, plugin, tmp_path, number, tries, how
+):
+    note = tmp_path / "tries"
+    plugin("murders", f"open({str(note)!r}, 'a').write('x'); os.kill(os.getppid(), signal.{number}); time.sleep(60)")
     with Servers() as servers:
         report = run(servers, spheres(backend="murders", algorithm="native"))
-        assert (report.status, report.reason) == ("crashed", 'the server of backend "murders" ended unexpectedly')
+        assert (report.status, report.reason) == ("crashed", f'the server of backend "murders" {how}')
+        assert note.read_text() == "x" * tries
         assert run(servers, spheres()).status == "ok"
+
+
+@pytest.mark.slow
+def test_servers_killed_while_they_start_are_started_again(spheres, monkeypatch):
+    """Three in a row, as when memory is short: what was no crash of a backend is no reason to give it up."""
+    started = rooms._Server.start
+    killed = []
+
+    def start(server, timeout):
+        if len(killed) < 3:
+            killed.append(server)
+            server._process.kill()
+        return started(server, timeout)
+
+    monkeypatch.setattr(rooms._Server, "start", start)
+    with Servers() as servers:
+        assert run(servers, spheres()).status == "ok"
+    assert len(killed) == 3
 
 
 @pytest.mark.slow

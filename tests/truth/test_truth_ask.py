@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+from html import unescape
 from pathlib import Path
 
 import fcl
@@ -11,6 +13,7 @@ import pytest
 from harness.backends import registry
 from harness.backends.protocol import ImpactTimes
 from harness.cli.main import main
+from harness.report.site import render
 from harness.truth.case_scene import CaseScenes
 from harness.truth.folder import COLUMNS, read_set
 
@@ -143,6 +146,13 @@ def test_published_rows_are_answered_right_by_the_engine(capsys):
     assert len(found) == 11
 
 
+def test_slow_approaches_are_answered_no_farther_apart_than_the_tolerance(capsys):
+    # a gap of 1.6e-12 of a size, as if the tolerance were that, would be 7.7e-9 s before the touch
+    assert main(["truth", "ask", str(PUBLISHED), "--families", "resting", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["backends"][0]["families"]["resting"]
+    assert (found["right"], found["asked"]) == (500, 500)
+
+
 @pytest.mark.slow
 def test_fcl_sees_published_pairs_apart_at_the_lower_bound_and_touching_at_the_upper_one():
     """FCL knows nothing of the proofs, and is asked in other arithmetic."""
@@ -158,3 +168,19 @@ def test_fcl_sees_published_pairs_apart_at_the_lower_bound_and_touching_at_the_u
         if touching != [0, 1]:
             wrong.append(given.lines[row])
     assert not wrong, f"{wrong} of cases.csv, with python-fcl {fcl.__version__}"
+
+
+def test_answers_that_are_kept_have_a_page_which_the_overview_links(folder, monkeypatch, capsys):
+    late = registry.Declaration(lambda: lambda: Told(lambda time: time + 1e-3))
+    known = registry._declared()
+    monkeypatch.setattr(registry, "_declared", lambda: {**known, "late": late})
+    database = str(folder / "answers.db")
+    for names in ("own,late", "late"):  # the second answers take the place of the first
+        assert main(["truth", "ask", str(folder), "--backends", names, "--db", database]) == 0
+    pages = dict(render(database))
+    assert 'href="truth.html"' in pages["index.html"]
+    page = unescape(re.sub(r"<[^>]+>", "|", pages["truth.html"])).replace("\u00a0", " ")
+    assert "own is right about all of 4 cases." in page
+    assert "late is right about 2 of 4 cases: 2 late; the latest answer comes 0.001" in page
+    assert [name for name in pages if name.startswith("truth-") and name.endswith(".svg")]
+    assert "backends.html" not in pages  # nobody was compared with anybody
