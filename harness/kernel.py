@@ -35,7 +35,7 @@ def inner(function: Function) -> Function:
 
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
 # `nsz` concern divisions and the sign of zero.
-_RELAXED = {"contract", "arcp", "nsz"}
+RELAXED = {"contract", "arcp", "nsz"}
 # A step is never called from Python: without the wrappers for that it compiles in two thirds of the time. Without
 # reference counts (`_nrt`), which a loop that makes no array does not need, it runs five times as fast.
 _STEP: dict[str, Any] = {
@@ -49,13 +49,13 @@ _STEP: dict[str, Any] = {
 
 def loop(function: Function) -> Function:
     """Compile an event loop, which Python calls and which makes no array."""
-    options: dict[str, Any] = {"_nrt": False, "fastmath": _RELAXED, "error_model": "numpy", "no_cfunc_wrapper": True}
+    options: dict[str, Any] = {"_nrt": False, "fastmath": RELAXED, "error_model": "numpy", "no_cfunc_wrapper": True}
     return cast(Function, _Waiting(function, lambda: _kept(function, **options)))
 
 
 def step(function: Function) -> Function:
     """Compile a named step of an event loop; it is always inlined, so that a name costs nothing."""
-    return cast(Function, _Waiting(function, lambda: _widened(_njit(fastmath=_RELAXED, **_STEP)(function))))
+    return cast(Function, _Waiting(function, lambda: _widened(_njit(fastmath=RELAXED, **_STEP)(function))))
 
 
 def strict_step(function: Function) -> Function:
