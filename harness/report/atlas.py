@@ -19,13 +19,15 @@ class AtlasPart:
     Parameters
     ----------
     experiment : its name
-    title : what the bodies are
+    title : what the bodies are, and what was asked of them
+    query : "collision", "tolerance" or "distance"
     engines, families : in the order in which they are shown
     cells : by engine and family, as the database has them
     """
 
     experiment: str
     title: str
+    query: str
     engines: Sequence[str]
     families: Sequence[str]
     cells: Mapping[tuple[str, str], Mapping[str, Any]]
@@ -49,21 +51,23 @@ class AtlasResults:
 
     @cached_property
     def parts(self) -> list[AtlasPart]:
-        """A matrix for every experiment, shape and mesh."""
-        found: dict[tuple[str, str, str], dict[tuple[str, str], Mapping[str, Any]]] = {}
+        """A matrix for every experiment, query, shape and mesh."""
+        found: dict[tuple[str, str, str, str], dict[tuple[str, str], Mapping[str, Any]]] = {}
         for record in self.records:
             for cell in record.document["atlas"]:
-                place = (record.experiment, cell["shape"], cell["mesh"])
+                query = cell.get("query", "collision")  # databases of before other queries have none
+                place = (record.experiment, query, cell["shape"], cell["mesh"])
                 found.setdefault(place, {})[cell["engine"], cell["family"]] = cell | _shown(record, cell)
         return [
             AtlasPart(
                 experiment,
-                f"{shape}{f' of {mesh}' if mesh else ''}",
+                f"{'' if query == 'collision' else f'{query}, '}{shape}{f' of {mesh}' if mesh else ''}",
+                query,
                 sorted({engine for engine, _ in cells}),
                 list(dict.fromkeys(family for _, family in cells)),
                 cells,
             )
-            for (experiment, shape, mesh), cells in sorted(found.items())
+            for (experiment, query, shape, mesh), cells in sorted(found.items())
         ]
 
     @cached_property
