@@ -2,29 +2,27 @@
 
 Kernels over arrays (`kernel`, `inner`) are strict: each operation is rounded as it is written. An event loop (`loop`)
 and its named steps (`step`) may fuse a product into a sum, and count no references to arrays.
+
+numba is imported with the first call of a kernel, and what the decorators return becomes numba's then: a command that
+flies nothing, such as `harness plan`, need not wait for it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import update_wrapper
+from threading import RLock
 from typing import Any, TypeVar, cast
-
-import numba
-from numba.core import types as numba_types
 
 from harness.kernel_cache import forgiving, own_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-# numba declares only some of its options and functions.
-_njit: Any = numba.njit
-_types: Any = numba_types
-
 
 def kernel(function: Function) -> Function:
     """Compile a function over arrays, keeping its type for the checker."""
-    return cast(Function, _kept(function, error_model="numpy", no_cfunc_wrapper=True))
+    return cast(Function, _Waiting(function, lambda: _kept(function, error_model="numpy", no_cfunc_wrapper=True)))
 
 
 def inner(function: Function) -> Function:
@@ -32,12 +30,12 @@ def inner(function: Function) -> Function:
 
     numba counts references to arrays at every real call, which made loops over neighbours four times slower.
     """
-    return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
+    return cast(Function, _Waiting(function, lambda: _njit(error_model="numpy", inline="always")(function)))
 
 
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
 # `nsz` concern divisions and the sign of zero.
-_RELAXED = {"contract", "arcp", "nsz"}
+RELAXED = {"contract", "arcp", "nsz"}
 # A step is never called from Python: without the wrappers for that it compiles in two thirds of the time. Without
 # reference counts (`_nrt`), which a loop that makes no array does not need, it runs five times as fast.
 _STEP: dict[str, Any] = {
@@ -51,12 +49,13 @@ _STEP: dict[str, Any] = {
 
 def loop(function: Function) -> Function:
     """Compile an event loop, which Python calls and which makes no array."""
-    return cast(Function, _kept(function, _nrt=False, fastmath=_RELAXED, error_model="numpy", no_cfunc_wrapper=True))
+    options: dict[str, Any] = {"_nrt": False, "fastmath": RELAXED, "error_model": "numpy", "no_cfunc_wrapper": True}
+    return cast(Function, _Waiting(function, lambda: _kept(function, **options)))
 
 
 def step(function: Function) -> Function:
     """Compile a named step of an event loop; it is always inlined, so that a name costs nothing."""
-    return cast(Function, _widened(_njit(fastmath=_RELAXED, **_STEP)(function)))
+    return cast(Function, _Waiting(function, lambda: _widened(_njit(fastmath=RELAXED, **_STEP)(function))))
 
 
 def strict_step(function: Function) -> Function:
@@ -64,11 +63,101 @@ def strict_step(function: Function) -> Function:
 
     Like every step it counts no references: it may read and write arrays that it is given, and makes and returns none.
     """
-    return cast(Function, _widened(_njit(**_STEP)(function)))
+    return cast(Function, _Waiting(function, lambda: _widened(_njit(**_STEP)(function))))
+
+
+def instruction(code: Callable[..., Any]) -> Any:
+    """What a kernel may call where numba has no function for an instruction of the machine.
+
+    Parameters
+    ----------
+    code : takes a typing context and the types of the arguments, gives a signature and what generates the instruction,
+        as `numba.extending.intrinsic` asks
+    """
+
+    def made() -> Any:
+        from numba.extending import intrinsic
+
+        return intrinsic(code)
+
+    return _Waiting(code, made)
+
+
+def written_as(compiled: Callable[..., Any]) -> Callable[[Function], Function]:
+    """Give a function another body in kernels than in Python.
+
+    Parameters
+    ----------
+    compiled : takes the types of the arguments and gives the function to write out, as `numba.extending.overload` asks
+    """
+
+    def named(function: Function) -> Function:
+        def made() -> Any:
+            from numba.extending import overload
+
+            overload(function, inline="always", strict=False)(compiled)
+            return function
+
+        return cast(Function, _Waiting(function, made))
+
+    return named
+
+
+_lock = RLock()
+
+
+class _Waiting:
+    """A kernel that numba does not know yet; called or asked for anything else, it becomes one.
+
+    numba looks at the globals of a kernel for those that it calls. So with a kernel all that are in its module become
+    numba's, and all in the modules that those are from.
+    """
+
+    def __init__(self, function: Callable[..., Any], make: Callable[[], Any]) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._make = make
+        self._made: Any = None
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        return (self._made or self.made())(*arguments, **named)
+
+    def __getattr__(self, name: str) -> Any:
+        """What numba's own has, its type among it."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.made(), name)
+
+    def made(self) -> Any:
+        """What numba made of it."""
+        with _lock:
+            if self._made is None:
+                self._made = self._make()
+                _make_all(self.py_func.__globals__)
+                for cell in self.py_func.__closure__ or ():
+                    if isinstance(cell.cell_contents, _Waiting):
+                        cell.cell_contents = cell.cell_contents.made()
+        return self._made
+
+
+def _make_all(names: dict[str, Any]) -> None:
+    """Put numba's kernels in the place of those of a module that wait."""
+    for name, value in list(names.items()):
+        if isinstance(value, _Waiting):
+            names[name] = value.made()
+
+
+def _njit(**options: Any) -> Any:
+    import numba
+
+    njit: Any = numba.njit  # numba declares only some of its options and functions
+    return njit(**options)
 
 
 def _kept(function: Any, **options: Any) -> Any:
     """Compile, or load what was compiled before; nothing of either where numba is told not to compile."""
+    import numba
+
     if getattr(numba.config, "DISABLE_JIT", False):
         return function
     with own_cache(function.__module__) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
@@ -93,6 +182,9 @@ def _widened(dispatcher: Any) -> Any:
 
 
 def _without_literals(kind: Any) -> Any:
-    if isinstance(kind, _types.BaseNamedTuple):
-        return _types.BaseTuple.from_types(tuple(map(_without_literals, kind.types)), kind.instance_class)
-    return _types.unliteral(kind)
+    from numba.core import types as numba_types
+
+    types: Any = numba_types
+    if isinstance(kind, types.BaseNamedTuple):
+        return types.BaseTuple.from_types(tuple(map(_without_literals, kind.types)), kind.instance_class)
+    return types.unliteral(kind)

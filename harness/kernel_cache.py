@@ -15,8 +15,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numba
-
 PACKAGE = Path(__file__).resolve().parent
 
 
@@ -44,6 +42,8 @@ def own_cache(module: str) -> Iterator[str]:
     str
         The folder; empty where there is none.
     """
+    import numba
+
     config: Any = numba.config
     theirs = config.CACHE_DIR
     config.CACHE_DIR = theirs or _folder(module) or ""

@@ -45,6 +45,9 @@ FAMILIES = {
 }
 """Families of poses of two bodies, in which backends go wrong in different ways."""
 
+FamilyQuery = Literal["collision", "tolerance", "distance"]
+"""What engines can be asked about poses of families."""
+
 WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
 """The six walls of a box, in the order in which they answer."""
 

@@ -9,18 +9,69 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from llvmlite import ir  # type: ignore[import-untyped]
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic, overload
-from numba.np.arrayobj import make_array
-
 from harness.arrays import Floats
+from harness.kernel import instruction, written_as
 
 LANES = 4
 """Spheres compared at once. At packing .3 three cells in a row hold 1.7 spheres, and seldom more than four."""
 
 
+def _lanes_within(context: Any, spheres: Any, begin: Any, x: Any, y: Any, z: Any, square: Any) -> Any:
+    from llvmlite import ir  # type: ignore[import-untyped]
+    from numba import types
+    from numba.core import cgutils
+    from numba.np.arrayobj import make_array
+
+    doubles, indices = ir.VectorType(ir.DoubleType(), LANES), ir.VectorType(ir.IntType(32), LANES)
+
+    def in_all_lanes(builder: Any, value: Any) -> Any:
+        nothing = ir.Constant(doubles, ir.Undefined)
+        one = builder.insert_element(nothing, value, ir.IntType(32)(0))
+        return builder.shuffle_vector(one, nothing, ir.Constant(indices, [0] * LANES))
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array = cast(Any, make_array)(signature.args[0])(context, builder, arguments[0])
+        first = context.cast(builder, arguments[1], signature.args[1], types.intp)
+        row = builder.extract_value(array.strides, 0)
+        total = None
+        for axis in range(3):
+            data = cast(Any, cgutils).pointer_add(builder, array.data, builder.mul(row, row.type(axis)))
+            centres = builder.load(builder.bitcast(builder.gep(data, [first]), ir.PointerType(doubles)))
+            centres.align = 8
+            gap = builder.fsub(in_all_lanes(builder, arguments[2 + axis]), centres)
+            product = builder.fmul(gap, gap)
+            total = product if total is None else builder.fadd(total, product)
+        near = builder.fcmp_ordered("<=", total, in_all_lanes(builder, arguments[5]))
+        return builder.zext(builder.bitcast(near, ir.IntType(LANES)), ir.IntType(64))
+
+    number = types.float64
+    return types.int64(spheres, begin, number, number, number, number), generate
+
+
+def _lowest_bit(context: Any, bits: Any) -> Any:
+    from llvmlite import ir
+    from numba import types
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        not_zero = ir.IntType(1)(1)
+        return builder.cttz(arguments[0], not_zero)
+
+    return types.int64(types.int64), generate
+
+
+_vector_lanes_within = cast(Callable[..., int], instruction(_lanes_within))
+_machine_lowest_bit = cast(Callable[[int], int], instruction(_lowest_bit))
+
+
+def _compiled_lanes_within(spheres: Any, begin: Any, x: Any, y: Any, z: Any, square: Any) -> Any:
+    return lambda spheres, begin, x, y, z, square: _vector_lanes_within(spheres, begin, x, y, z, square)
+
+
+def _compiled_lowest_bit(bits: Any) -> Any:
+    return lambda bits: _machine_lowest_bit(bits)
+
+
+@written_as(_compiled_lanes_within)
 def lanes_within(spheres: Floats, begin: int, x: float, y: float, z: float, square: float) -> int:
     """Which of the next spheres have their centres within a distance of a point.
 
@@ -42,60 +93,7 @@ def lanes_within(spheres: Floats, begin: int, x: float, y: float, z: float, squa
     return near
 
 
+@written_as(_compiled_lowest_bit)
 def lowest_bit(bits: int) -> int:
     """The place of the lowest bit that is set, of at least one."""
     return (bits & -bits).bit_length() - 1
-
-
-DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
-INDICES = ir.VectorType(ir.IntType(32), LANES)
-
-
-def _lanes_within(context: Any, spheres: Any, begin: Any, x: Any, y: Any, z: Any, square: Any) -> Any:
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        array = cast(Any, make_array)(signature.args[0])(context, builder, arguments[0])
-        first = context.cast(builder, arguments[1], signature.args[1], types.intp)
-        row = builder.extract_value(array.strides, 0)
-        total = None
-        for axis in range(3):
-            data = cast(Any, cgutils).pointer_add(builder, array.data, builder.mul(row, row.type(axis)))
-            centres = builder.load(builder.bitcast(builder.gep(data, [first]), ir.PointerType(DOUBLES)))
-            centres.align = 8
-            gap = builder.fsub(_in_all_lanes(builder, arguments[2 + axis]), centres)
-            product = builder.fmul(gap, gap)
-            total = product if total is None else builder.fadd(total, product)
-        near = builder.fcmp_ordered("<=", total, _in_all_lanes(builder, arguments[5]))
-        return builder.zext(builder.bitcast(near, ir.IntType(LANES)), ir.IntType(64))
-
-    number = types.float64
-    return types.int64(spheres, begin, number, number, number, number), generate
-
-
-def _in_all_lanes(builder: Any, value: Any) -> Any:
-    nothing = ir.Constant(DOUBLES, ir.Undefined)
-    one = builder.insert_element(nothing, value, ir.IntType(32)(0))
-    return builder.shuffle_vector(one, nothing, ir.Constant(INDICES, [0] * LANES))
-
-
-def _lowest_bit(context: Any, bits: Any) -> Any:
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        not_zero = ir.IntType(1)(1)
-        return builder.cttz(arguments[0], not_zero)
-
-    return types.int64(types.int64), generate
-
-
-_vector_lanes_within = cast(Callable[..., int], intrinsic(_lanes_within))
-_machine_lowest_bit = cast(Callable[[int], int], intrinsic(_lowest_bit))
-
-
-@overload(lanes_within, inline="always", strict=False)
-def _compiled_lanes_within(spheres: Any, begin: Any, x: Any, y: Any, z: Any, square: Any) -> Any:
-    return lambda spheres, begin, x, y, z, square: _vector_lanes_within(spheres, begin, x, y, z, square)
-
-
-@overload(lowest_bit, inline="always", strict=False)
-def _compiled_lowest_bit(bits: Any) -> Any:
-    return lambda bits: _machine_lowest_bit(bits)

@@ -19,7 +19,9 @@ from harness.cli.crosscheck import Meshes
 from harness.compare.atlas import JUDGE, Atlas, Cell, survey
 from harness.compare.budget import Budget
 from harness.compare.document import Known, Reduced, document, reduced, shown_case
+from harness.compare.gap_atlas import SURVEYS
 from harness.compare.outcome import Comparison
+from harness.compare.own_gaps import OWN
 from harness.compare.script import script_of
 from harness.experiment.experiment import Experiment
 from harness.measure.machine import package_versions
@@ -56,6 +58,7 @@ class Surveyed:
 
     def documents(self) -> Iterator[tuple[tuple[str, str], dict[str, Any]]]:
         """What the database keeps of each engine."""
+        rows_of_all = self.cells()
         for engine in dict.fromkeys(cell.engine for cell in self.atlas.cells):
             mine = [place for place, row in enumerate(self.rows) if row.case.wrong == engine]
             found = Comparison(
@@ -65,7 +68,7 @@ class Surveyed:
                 left_out=self.found.left_out,
             )
             rows = [self.rows[place] for place in mine]
-            cells = [cell for cell in self.cells() if cell["engine"] == engine]
+            cells = [cell for cell in rows_of_all if cell["engine"] == engine]
             for cell in cells:
                 cell["case"] = mine.index(cell["case"]) if cell["case"] is not None else None
             shown = [
@@ -100,8 +103,11 @@ def surveyed(
     wanted = {(point.scene.shape, point.scene.mesh_names): point for point in experiment.points}
     for (shape, _), point in wanted.items():
         measure = experiment.measure
-        for mesh in files_of(experiment, point, meshes).meshes or (None,):
-            atlas.add(survey(shape, mesh, measure.families, measure.family_poses, names, budget, progress))
+        for query in measure.family_queries:
+            asked = names if query == "collision" else (*names, OWN)
+            how = measure.families, measure.family_poses, asked, budget, progress
+            for mesh in files_of(experiment, point, meshes).meshes or (None,):
+                atlas.add(survey(shape, mesh, *how, made=SURVEYS[query]))
     found = Comparison(
         cases=list(atlas.cases.values()),
         failures=atlas.failures,
@@ -123,7 +129,8 @@ def survey_key(experiment: Experiment, meshes: Meshes, name: str) -> str:
     """Of two surveys of an engine with the same key the second would find nothing new."""
     points = sorted({point_key(point, files_of(experiment, point, meshes)) for point in experiment.points})
     measure = experiment.measure
-    content = json.dumps([points, name, measure.families, measure.family_poses, package_versions(packages())])
+    asked = [measure.families, measure.family_queries, measure.family_poses]
+    content = json.dumps([points, name, *asked, package_versions(packages())])
     return hashlib.sha256(content.encode()).hexdigest()
 
 
@@ -135,13 +142,15 @@ def cell_row(cell: Cell) -> dict[str, Any]:
 
 def cell_text(cell: Cell) -> str:
     """A cell in a line."""
-    seen = f"{cell.family}, {cell.shape}{f' of {cell.mesh}' if cell.mesh else ''}"
+    asked = "" if cell.query == "collision" else f"{cell.query}, "
+    seen = f"{asked}{cell.family}, {cell.shape}{f' of {cell.mesh}' if cell.mesh else ''}"
     if not cell.verdicts:
         return f"{cell.engine}: {seen}: no verdict"
     rate, low, high = cell.per_million
+    off = "from touching" if cell.query == "collision" else "off"
     wrong = (
         f"{cell.wrong} wrong, {rate:.3g} in a million [{low:.3g}, {high:.3g}], {cell.beyond} of them beyond its "
-        f"tolerance, the farthest {cell.deepest:.3g} of a size from touching"
+        f"tolerance, the farthest {cell.deepest:.3g} of a size {off}"
         if cell.wrong
         else f"none wrong, at most {high:.3g} in a million"
     )

@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import betaincinv
 
 from harness.compare.budget import Budget
 from harness.compare.comparison import MOST_FAILURES
@@ -24,7 +24,7 @@ from harness.compare.tally import NamePair
 from harness.compare.truths import Truths
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from harness.vocabulary import Shape
+from harness.vocabulary import Query, Shape
 
 JUDGE = "exact arithmetic"
 """The name under which the judge stands beside an engine."""
@@ -42,11 +42,14 @@ class Cell:
     ----------
     engine, family, shape, mesh : names; mesh is empty for spheres
     verdicts : that were given
-    wrong : of those, how many exact arithmetic contradicts
-    beyond : of the wrong, how many lie farther from touching than the tolerance that the engine declares
-    deepest : the largest gap or overlap of a wrong verdict, of the size of the smaller body; 0 without any
+    wrong : of those, how many exact arithmetic contradicts; of gaps, those farther off than the numbers can hold
+    beyond : of the wrong, how many lie farther from touching than the tolerance that the engine declares; of gaps,
+        how many are off by more than that
+    deepest : the largest gap or overlap of a wrong verdict, of the size of the smaller body; of gaps, the largest
+        error, and of "tolerance" the largest difference of a gap from the one that was asked for; 0 without any
     seconds : CPU time of a query, the median of the sizes and places of the family; 0 where it was not measured
     failures : poses at which it crashed, hung or raised
+    query : what was asked: "collision", "tolerance" or "distance"
     """
 
     engine: str
@@ -59,14 +62,17 @@ class Cell:
     deepest: float = 0.0
     seconds: float = 0.0
     failures: int = 0
+    query: Query = "collision"
 
     @property
     def per_million(self) -> tuple[float, float, float]:
         """Wrong verdicts in a million, and the interval of Clopper and Pearson that holds the rate in 95 %."""
         if not self.verdicts:
             return float("nan"), float("nan"), float("nan")
-        found = stats.binomtest(self.wrong, self.verdicts).proportion_ci(_CONFIDENCE, method="exact")
-        return 1e6 * self.wrong / self.verdicts, 1e6 * float(found.low), 1e6 * float(found.high)
+        wrong, right, tail = self.wrong, self.verdicts - self.wrong, (1.0 - _CONFIDENCE) / 2.0
+        low = betaincinv(wrong, right + 1, tail) if wrong else 0.0
+        high = betaincinv(wrong + 1, right, 1.0 - tail) if right else 1.0
+        return 1e6 * wrong / self.verdicts, 1e6 * float(low), 1e6 * float(high)
 
 
 @dataclass
@@ -104,6 +110,7 @@ def survey(
     budget: Budget,
     progress: Callable[[str], None] = lambda line: None,
     timeout: float = ANSWER_SECONDS,
+    made: type[Survey] | None = None,
 ) -> Atlas:
     """Ask engines about every pose of some families, and judge every answer.
 
@@ -116,22 +123,30 @@ def survey(
     budget : ends it early, and keeps what was left out
     progress : told what is being done
     timeout : s for an answer
+    made : what is asked; whether they touch, if nothing is said
     """
-    atlas = Atlas()
+    atlas, made = Atlas(), made or Survey
     for name in names:
         preload(name)
     for family in families:
-        what = f"{family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
+        what = f"{made.query}, {family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:
             budget.left_out.append(f"{what}: not asked, {budget.seconds:g} s were spent")
             continue
         progress(f"{what}: {count} poses")
-        _Survey(atlas, family, shape, mesh, names, budget, timeout).ask(count)
+        made(atlas, family, shape, mesh, names, budget, timeout).ask(count)
     return atlas
 
 
-class _Survey:
-    """One family put to all engines."""
+class Survey:
+    """One family put to all engines, asked whether the bodies touch; what asks something else derives from it.
+
+    Attributes
+    ----------
+    query : what is asked
+    """
+
+    query: Query = "collision"
 
     def __init__(
         self,
@@ -143,73 +158,87 @@ class _Survey:
         budget: Budget,
         timeout: float,
     ) -> None:
-        self._atlas, self._family, self._shape, self._mesh = atlas, family, shape, mesh
-        self._names, self._budget, self._timeout = names, budget, timeout
+        self.atlas, self.family, self.shape, self.mesh = atlas, family, shape, mesh
+        self.names, self.budget, self.timeout = names, budget, timeout
         self._places: dict[str, int] = {}
         self._seconds: dict[str, list[float]] = {}
 
     def ask(self, count: int) -> None:
         """Every engine about every pose."""
-        for pose_set in family_poses(self._family, self._shape, (self._mesh,) if self._mesh else (), count):
+        for pose_set in family_poses(self.family, self.shape, (self.mesh,) if self.mesh else (), count):
             with ExitStack() as processes:
                 asked = self._loaded(pose_set.scene, processes)
                 # an engine that rounds its hulls is asked about poses of those, and judged by them
                 held = {name: replace(pose_set.scene, hulls=one.facts.hulls) for name, one in asked.items()}
                 whole = pose_set.poses(pose_set.scene)
                 poses = {name: pose_set.poses(held[name]) if one.facts.hulls else whole for name, one in asked.items()}
-                for place in range(0, len(whole), self._budget.every):
-                    if self._budget.spent:
-                        self._budget.left_out.append(
-                            f"{self._family}, {self._shape}: {len(whole) - place} of {len(whole)} poses not asked, "
-                            f"{self._budget.seconds:g} s were spent"
+                for place in range(0, len(whole), self.budget.every):
+                    if self.budget.spent:
+                        self.budget.left_out.append(
+                            f"{self.family}, {self.shape}: {len(whole) - place} of {len(whole)} poses not asked, "
+                            f"{self.budget.seconds:g} s were spent"
                         )
                         break
-                    self._ask_at(place, asked, held, poses)
+                    self.ask_at(place, asked, held, poses)
                 for name, one in asked.items():
                     # of the first ones: they were all answered, so that nothing is left to be set up
-                    seconds = one.seconds_a_query(poses[name][:_TIMED]) if not self._cell(name).failures else None
-                    if seconds is not None:
+                    if name not in self._places or self.failures_of(name):
+                        continue
+                    if (seconds := self.timed(one, poses[name][:_TIMED])) is not None:
                         self._seconds.setdefault(name, []).append(seconds)
         for name, measured in self._seconds.items():
-            self._cell(name).seconds = float(np.median(measured))
+            self.cell(name).seconds = float(np.median(measured))
+
+    def timed(self, one: Isolated, poses: Sequence[Pose]) -> float | None:
+        """CPU time of a query, s."""
+        return one.seconds_a_query(poses)
 
     def _loaded(self, scene: Scene, processes: ExitStack) -> dict[str, Isolated]:
         asked = {}
-        for name in self._names:
+        for name in self.names:
             try:
-                one = processes.enter_context(Isolated(name, scene, self._timeout))
+                one = processes.enter_context(Isolated(name, scene, self.timeout))
             except UnusableError as error:
-                self._say(f"{name} cannot be asked about shape {self._shape}: {error}")
+                self.say(f"{name} cannot be asked about shape {self.shape}: {error}")
+                continue
+            if self.query not in one.facts.queries:
                 continue
             if one.facts.approximated is not None:
-                self._say(f"{one.facts.approximated}; it is judged on hulls")
+                self.say(f"{one.facts.approximated}; it is judged on hulls")
                 continue
             asked[name] = one
         return asked
 
-    def _say(self, line: str) -> None:
-        if line not in self._atlas.unsupported:
-            self._atlas.unsupported.append(line)
+    def say(self, line: str) -> None:
+        """Keep what could not be asked, and why."""
+        if line not in self.atlas.unsupported:
+            self.atlas.unsupported.append(line)
 
-    def _cell(self, name: str) -> Cell:
+    def cell(self, name: str) -> Cell:
+        """What has been found of an engine in this family."""
         if name not in self._places:
-            self._places[name] = len(self._atlas.cells)
-            mesh = self._mesh.name if self._mesh is not None and self._shape != "sphere" else ""
-            self._atlas.cells.append(Cell(name, self._family, self._shape, mesh))
-        return self._atlas.cells[self._places[name]]
+            self._places[name] = len(self.atlas.cells)
+            mesh = self.mesh.name if self.mesh is not None and self.shape != "sphere" else ""
+            self.atlas.cells.append(Cell(name, self.family, self.shape, mesh, query=self.query))
+        return self.atlas.cells[self._places[name]]
 
-    def _ask_at(
+    def failures_of(self, name: str) -> int:
+        """Poses at which an engine has failed."""
+        return self.cell(name).failures if name in self._places else 0
+
+    def ask_at(
         self, place: int, asked: dict[str, Isolated], held: dict[str, Scene], poses: dict[str, Sequence[Pose]]
     ) -> None:
+        """Every engine about one pose, which may be another for one that has hulls of its own."""
         shared: Truths | None = None
         right, wrong = [], []
         for name, one in asked.items():
-            cell, pose = self._cell(name), poses[name][place]
-            if cell.failures >= MOST_FAILURES:
+            cell, pose = self.cell(name), poses[name][place]
+            if self.failures_of(name) >= MOST_FAILURES:
                 continue
             answer = one.pairs(pose)
             if isinstance(answer, str):
-                self._failed(cell, pose, place, answer)
+                self.failed(cell, pose, place, answer)
                 continue
             if one.facts.hulls:
                 truths = Truths(held[name], pose)
@@ -228,7 +257,7 @@ class _Survey:
 
     def _count(self, name: str, one: Isolated, truths: Truths, scene: Scene, place: int, names: NamePair) -> None:
         """A wrong verdict."""
-        cell, truth, sizes = self._cell(name), truths.judgement(_BODIES), scene.bodies.sizes
+        cell, truth, sizes = self.cell(name), truths.judgement(_BODIES), scene.bodies.sizes
         gap = abs(truth.gap) / float(sizes.min())
         cell.wrong += 1
         cell.deepest = max(cell.deepest, gap)
@@ -236,15 +265,16 @@ class _Survey:
         if abs(truth.gap) <= band(scene, tolerance, truths.pose, _BODIES):
             return
         cell.beyond += 1
-        known = self._atlas.cases.get(self._places[name])
+        known = self.atlas.cases.get(self._places[name])
         if known is None or gap > abs(known.judgement.gap) / float(known.scene.bodies.sizes.min()):
-            self._atlas.cases[self._places[name]] = Case(
+            self.atlas.cases[self._places[name]] = Case(
                 names, name, _BODIES, truth, scene=scene, pose=truths.pose, query_index=place + 1
             )
 
-    def _failed(self, cell: Cell, pose: Pose, place: int, reason: str) -> None:
+    def failed(self, cell: Cell, pose: Pose, place: int, reason: str) -> None:
+        """Keep how an engine failed at a pose."""
         cell.failures += 1
         pair = (cell.engine, JUDGE)
-        self._atlas.failures.append(Failure(pair, cell.engine, f"{self._family}: {pose.name}", place + 1, reason))
+        self.atlas.failures.append(Failure(pair, cell.engine, f"{self.family}: {pose.name}", place + 1, reason))
         if cell.failures >= MOST_FAILURES:
-            self._say(f"{cell.engine} failed at {MOST_FAILURES} poses of {self._family}; the others are not asked")
+            self.say(f"{cell.engine} failed at {MOST_FAILURES} poses of {self.family}; the others are not asked")

@@ -7,27 +7,32 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
+from math import inf
 from time import process_time
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeGuard, cast
 
 from harness.arrays import Floats, Pairs
 from harness.backends import registry
-from harness.backends.contract import ContractError, read_only, require_pairs
+from harness.backends.contract import ContractError, read_only, require_gaps, require_pairs
 from harness.backends.protocol import (
     Backend,
+    Distances,
+    Near,
     approximations,
     contained_is_touching,
     own_hulls,
     own_hulls_tolerance,
+    queries,
 )
 from harness.child_process import Channel, Child
+from harness.compare.own_gaps import OWN, OwnGaps
 from harness.compare.poses import Pose
 from harness.errors import InputError
 from harness.methods.at_poses import AtPoses
 from harness.scene.hull import Hull
 from harness.scene.scene import Scene, Solid
-from harness.vocabulary import MethodName, Shape
+from harness.vocabulary import MethodName, Query, Shape
 
 ANSWER_SECONDS = 10.0
 """s for an answer, by which a backend that hangs is told from a slow one."""
@@ -46,6 +51,7 @@ class Facts:
     hulls : those it holds in place of the scene's, by what bodies share
     hulls_tolerance : of size, where those are taken as the truth
     solid : it says that of two bodies one inside the other touches, though the shape is a surface
+    queries : what it can be asked
     """
 
     tolerance: float
@@ -53,10 +59,50 @@ class Facts:
     hulls: Mapping[Solid, Hull] = field(default_factory=dict)
     hulls_tolerance: float = 0.0
     solid: bool = False
+    queries: tuple[Query, ...] = ("collision",)
+
+
+@dataclass(frozen=True, eq=False)
+class NearQuestion:
+    """How far apart two bodies are, or whether they are near.
+
+    Parameters
+    ----------
+    query : "distance" or "tolerance"
+    pose : Pose
+    within : m
+    """
+
+    query: Query
+    pose: Pose
+    within: float
+
+    def ask(self, backend: Backend, positions: Floats, quaternions: Floats) -> object:
+        """What the backend says, as it says it."""
+        if self._decides(backend):
+            return backend.near(positions, quaternions, self.within)
+        return cast(Distances, backend).distances(positions, quaternions, self.within)
+
+    def gap(self, name: str, backend: Backend, answer: object, count: int) -> float:
+        """m, that the answer tells; of near pairs 0, and inf where they are not."""
+        if self._decides(backend):
+            return 0.0 if len(require_pairs(name, answer, count)) else inf
+        found = require_gaps(name, answer, count, self.within)
+        if not len(found.pairs):
+            return inf
+        return float(found.gaps[0]) if self.query == "distance" else 0.0
+
+    def _decides(self, backend: Backend) -> TypeGuard[Near]:
+        """Whether its library decides what is near for less than a distance."""
+        return self.query == "tolerance" and isinstance(backend, Near)
 
 
 class UnusableError(Exception):
     """The backend cannot take the scene at all, and why."""
+
+
+class HangingError(UnusableError):
+    """It did not take the scene in the time that it has, as it would any other, as far as one can tell."""
 
 
 class Isolated:
@@ -70,6 +116,7 @@ class Isolated:
 
     Attributes
     ----------
+    name : as given
     facts : what it declares of itself, once entered
 
     Raises
@@ -79,7 +126,7 @@ class Isolated:
     """
 
     def __init__(self, name: str, scene: Scene, timeout: float = ANSWER_SECONDS) -> None:
-        self._name, self._scene, self._timeout = name, scene, timeout
+        self.name, self._scene, self._timeout = name, scene, timeout
         self._child: Child | None = None
 
     def __enter__(self) -> Isolated:
@@ -93,24 +140,35 @@ class Isolated:
 
     def pairs(self, pose: Pose) -> Pairs | str:
         """The touching pairs at a pose, or how the backend failed at it; after a failure it is started afresh."""
+        found: Pairs | str = self._answer((pose.positions, pose.quaternions))
+        return found
+
+    def near(self, question: NearQuestion) -> float | str:
+        """The gap that it tells of a pair, m; 0 where it says that they are near, and inf that they are not."""
+        found: float | str = self._answer(question)
+        return found
+
+    def _answer(self, question: Any) -> Any:
         if self._child is None:
             try:
                 self._start()
             except UnusableError as error:
                 return str(error)
         assert self._child is not None, "it has been started"
-        answer = self._child.ask(pickle.dumps((pose.positions, pose.quaternions)), self._timeout)
+        answer = self._child.ask(pickle.dumps(question), self._timeout)
         if isinstance(answer, bytes):
-            found: Pairs | str = pickle.loads(answer)
-            return found
+            return pickle.loads(answer)
         ending, self._child = self._child.end(), None
         return f"no answer within {self._timeout:g} s" if answer == "timeout" else ending.instead_of("an answer")
 
-    def seconds_a_query(self, poses: Sequence[Pose]) -> float | None:
-        """CPU time of a query when these poses, all of them answered before, are asked one right after another, s."""
+    def seconds_a_query(self, poses: Sequence[Pose], near: NearQuestion | None = None) -> float | None:
+        """CPU time of a query when these poses, all of them answered before, are asked one right after another, s.
+
+        Of collisions, or of what is asked of gaps, whatever the pose of that question is.
+        """
         if self._child is None or not poses:
             return None
-        asked = _Timed(tuple((pose.positions, pose.quaternions) for pose in poses))
+        asked = _Timed(tuple((pose.positions, pose.quaternions) for pose in poses), near)
         answer = self._child.ask(pickle.dumps(asked), self._timeout * len(poses))
         if isinstance(answer, bytes):
             seconds: float | None = pickle.loads(answer)
@@ -119,11 +177,13 @@ class Isolated:
         return None
 
     def _start(self) -> Facts:
-        self._child = Child.fork(partial(_serve, self._name, self._scene))
+        self._child = Child.fork(partial(_serve, self.name, self._scene))
         try:
             answer = self._child.receive(_LOADING * self._timeout)
             if answer == "timeout":
-                raise UnusableError("it did not load the scene in time")
+                raise HangingError(
+                    f"it did not load the scene within {_LOADING * self._timeout:g} s, and is not asked again"
+                )
             if not isinstance(answer, bytes):
                 raise UnusableError(f"loading the scene, it {self._child.end().instead_of('an answer')}")
             loaded: Facts | str = pickle.loads(answer)
@@ -143,13 +203,15 @@ class Isolated:
 def preload(name: str) -> None:
     """Import what stands behind a name, where it comes with this program: then the processes of it need not, each."""
     backend = name.partition("/")[0]
-    if registry.ours(backend):
+    if backend != OWN and registry.ours(backend):
         with suppress(InputError):
             registry.create(backend)
 
 
 def _create(name: str, shape: Shape) -> Backend:
     """What stands behind a name: a method of this program ("fcl/grid"), or a backend's own pipeline ("pybullet")."""
+    if name == OWN:
+        return OwnGaps()
     return AtPoses(MethodName.read(name, shape)) if "/" in name else registry.create(name)
 
 
@@ -166,19 +228,23 @@ def _serve(name: str, scene: Scene, channel: Channel) -> None:
             own_hulls(backend) if scene.shape == "hull" else {},
             own_hulls_tolerance(backend),
             contained_is_touching(backend, scene.shape),
+            queries(backend),
         )
     except Exception as error:  # a plugin may fail in any way
         channel.send(pickle.dumps(str(error) if isinstance(error, InputError) else _told(error)))
         return
     channel.send(pickle.dumps(facts))
     # what is our own needs no read-only view, for which its kernels would be compiled anew
-    guarded = (lambda poses: poses) if isinstance(backend, AtPoses) else read_only
+    guarded = (lambda poses: poses) if isinstance(backend, AtPoses | OwnGaps) else read_only
     while (asked := channel.receive()) is not None:
         question = pickle.loads(asked)
         answer: Any
         try:
             if isinstance(question, _Timed):
                 answer = question.seconds(backend)
+            elif isinstance(question, NearQuestion):
+                poses = guarded(question.pose.positions), guarded(question.pose.quaternions)
+                answer = question.gap(name, backend, question.ask(backend, *poses), len(poses[0]))
             else:
                 positions, quaternions = question
                 answer = backend.pairs(guarded(positions), guarded(quaternions))
@@ -195,12 +261,14 @@ class _Timed:
     """Poses to be asked about without a pause: positions and quaternions of each."""
 
     poses: tuple[tuple[Floats, Floats], ...]
+    near: NearQuestion | None = None
 
     def seconds(self, backend: Backend) -> float:
         """CPU time of a query."""
+        ask = backend.pairs if self.near is None else partial(self.near.ask, backend)
         started = process_time()
         for positions, quaternions in self.poses:
-            backend.pairs(positions, quaternions)
+            ask(positions, quaternions)
         return (process_time() - started) / len(self.poses)
 
 

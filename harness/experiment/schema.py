@@ -15,6 +15,7 @@ from harness.vocabulary import (
     REFERENCE_ALGORITHM,
     Algorithm,
     Family,
+    FamilyQuery,
     Query,
     ReferenceAlgorithm,
     Response,
@@ -200,6 +201,9 @@ class MeasureSpec(Declared):
     compare: Switch = Field(False, description="hold the backends of the points against each other, after the runs")
     families: tuple[Family, ...] = Field(
         (), description="families of two-body poses that every installed backend is judged on; see `harness compare`"
+    )
+    family_queries: tuple[FamilyQuery, ...] = Field(
+        ("collision",), description="what they are asked of each family: collision, tolerance, distance"
     )
     family_poses: Annotated[Whole, Field(ge=1, le=MOST_RUNS)] = Field(
         100, description="poses of each family, shape and mesh"

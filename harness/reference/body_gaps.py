@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from harness.arrays import Floats
 from harness.reference.triangle_gaps import nearest_on_triangle, triangle_gaps
@@ -41,6 +40,8 @@ def surface_bounds(one: Surface, other: Surface, *, solid: bool) -> GapBounds:
     corners, other_corners = one.vertices[one.faces], other.vertices[other.faces]
     if solid and (_inside(one.vertices[:1], other_corners)[0] or _inside(other.vertices[:1], corners)[0]):
         return GapBounds(0.0, 0.0)
+    from scipy.spatial import cKDTree  # which a plan need not wait for
+
     # the nearest vertices are no nearer than the surfaces
     upper = float(cKDTree(other.vertices).query(one.vertices)[0].min())
     slack = _ROUNDING * max(float(np.abs(one.vertices).max()), float(np.abs(other.vertices).max()))

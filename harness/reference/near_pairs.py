@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from harness.arrays import Floats, Ints, Pairs
 from harness.broadphase.ignored import without
@@ -119,6 +118,8 @@ def _close(scene: Scene, positions: Floats, within: float) -> Pairs:
     radii = scene.enclosing_radii
     if len(radii) < 2:
         return np.empty((0, 2), np.int64)
+    from scipy.spatial import cKDTree  # which a plan need not wait for
+
     widest = (2.0 * float(radii.max()) + within) * (1.0 + _SLACK)
     pairs = cKDTree(positions).query_pairs(widest, output_type="ndarray").astype(np.int64).reshape(-1, 2)
     pairs.sort(axis=1)

@@ -1,4 +1,4 @@
-"""Compile every kernel of this room before a clock runs."""
+"""Compile every kernel of this room, and import what it needs, before a clock runs."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from harness.scene.scene import Scene
 
 
 def warm_up_reference(scene: Scene) -> None:
-    """Compile what references and errors need for a shape.
+    """Compile and import what references and errors need for a shape.
 
     Parameters
     ----------
     scene : of the shape, with two bodies that meet
     """
+    import scipy.spatial  # noqa: F401
+
     contacts = scene_contacts(scene, 1.0, 1e-6)
     match(contacts, contacts.onset, contacts.pairs[contacts.encounter], 1.0)
     events = Events(contacts.onset, contacts.pairs[contacts.encounter], np.full(len(contacts), -1))

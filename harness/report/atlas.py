@@ -19,13 +19,15 @@ class AtlasPart:
     Parameters
     ----------
     experiment : its name
-    title : what the bodies are
+    title : what the bodies are, and what was asked of them
+    query : "collision", "tolerance" or "distance"
     engines, families : in the order in which they are shown
     cells : by engine and family, as the database has them
     """
 
     experiment: str
     title: str
+    query: str
     engines: Sequence[str]
     families: Sequence[str]
     cells: Mapping[tuple[str, str], Mapping[str, Any]]
@@ -49,22 +51,36 @@ class AtlasResults:
 
     @cached_property
     def parts(self) -> list[AtlasPart]:
-        """A matrix for every experiment, shape and mesh."""
-        found: dict[tuple[str, str, str], dict[tuple[str, str], Mapping[str, Any]]] = {}
+        """A matrix for every experiment, query, shape and mesh."""
+        found: dict[tuple[str, str, str, str], dict[tuple[str, str], Mapping[str, Any]]] = {}
         for record in self.records:
             for cell in record.document["atlas"]:
-                place = (record.experiment, cell["shape"], cell["mesh"])
+                query = cell.get("query", "collision")  # databases of before other queries have none
+                place = (record.experiment, query, cell["shape"], cell["mesh"])
                 found.setdefault(place, {})[cell["engine"], cell["family"]] = cell | _shown(record, cell)
         return [
             AtlasPart(
                 experiment,
-                f"{shape}{f' of {mesh}' if mesh else ''}",
+                f"{'' if query == 'collision' else f'{query}, '}{shape}{f' of {mesh}' if mesh else ''}",
+                query,
                 sorted({engine for engine, _ in cells}),
                 list(dict.fromkeys(family for _, family in cells)),
                 cells,
             )
-            for (experiment, shape, mesh), cells in sorted(found.items())
+            for (experiment, query, shape, mesh), cells in sorted(found.items())
         ]
+
+    @cached_property
+    def overall(self) -> list[AtlasPart]:
+        """Of each query that was asked of several kinds of bodies, a matrix of all of them together."""
+        found = []
+        for query in dict.fromkeys(part.query for part in self.parts):
+            parts = [part for part in self.parts if part.query == query]
+            if len(parts) > 1:
+                families = dict.fromkeys(family for part in parts for family in part.families)
+                engines = sorted({engine for part in parts for engine in part.engines})
+                found.append(AtlasPart("", f"{query}, all bodies", query, engines, list(families), _together(parts)))
+        return found
 
     @cached_property
     def files(self) -> dict[str, str]:
@@ -83,6 +99,20 @@ class AtlasResults:
 def case_stem(record: ComparisonRecord, place: int) -> str:
     """Where the files of a case lie, without suffix."""
     return f"cases/{record.experiment}-{record.backends[0]}-{place}".replace("/", "-").replace("cases-", "cases/", 1)
+
+
+def _together(parts: Sequence[AtlasPart]) -> dict[tuple[str, str], Mapping[str, Any]]:
+    """Verdicts of all parts, counted together by engine and family."""
+    cells: dict[tuple[str, str], dict[str, Any]] = {}
+    for part in parts:
+        for place, cell in part.cells.items():
+            counted = cells.setdefault(place, {"verdicts": 0, "wrong": 0, "beyond": 0})
+            for name in counted:
+                counted[name] += cell[name]
+    return {
+        place: cell | {"per_million": 1e6 * cell["wrong"] / cell["verdicts"] if cell["verdicts"] else None}
+        for place, cell in cells.items()
+    }
 
 
 def _shown(record: ComparisonRecord, cell: Mapping[str, Any]) -> dict[str, Any]:

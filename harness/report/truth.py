@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,6 +36,11 @@ class TruthPart:
         able = [label for label, found in self.asked.items() if not found["problem"]]
         return sorted(able, key=lambda label: (label != "own", label))
 
+    def heading(self, engine: str) -> str:
+        """An engine in few letters: of one that is stepped its library and the step."""
+        found = self.asked[engine]
+        return f"{found['backend'].partition('/')[0]}, dt {_step(found['dt'])}" if found["dt"] else engine
+
     @cached_property
     def families(self) -> list[str]:
         """In the order of the set, without that of all."""
@@ -65,3 +71,13 @@ class TruthResults:
         for record in self.records:
             found.setdefault(record.experiment, {})[record.backends[0]] = record.document["truth"]
         return [TruthPart(name, asked) for name, asked in sorted(found.items())]
+
+
+def _step(seconds: float) -> str:
+    """A step as people write it.
+
+    >>> _step(1 / 60), _step(0.3)
+    ('1/60 s', '0.3 s')
+    """
+    steps = 1.0 / seconds
+    return f"1/{steps:.0f} s" if steps > 1.0 and math.isclose(steps, round(steps), rel_tol=1e-9) else f"{seconds:.6g} s"

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from harness.experiment.experiment import Point
 from harness.motion.hits import Outcome
 from harness.runner.point import is_stepped
 from harness.scene.scene import Scene
 from harness.store.recording import Recording, Surface
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # A sweep records a scene of at most this many bodies and hits, whose run took at most this long (s): all of an
 # experiment's page together, and of a default sweep a few seconds.
@@ -66,6 +68,7 @@ def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
 
     Examples
     --------
+    >>> import pandas as pd
     >>> points = {"point": ["few", "many"], "count": [5, 50]}
     >>> runs = pd.DataFrame({**points, "status": "ok", "events": 9, "run_seconds": 0.1})
     >>> worth_recording(["few", "many"], runs)

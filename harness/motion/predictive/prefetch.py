@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from llvmlite import ir  # type: ignore[import-untyped]
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic
-from numba.np.arrayobj import make_array
+from harness.kernel import instruction
 
 
 def _prefetch(context: Any, array: Any, row: Any) -> Any:
+    from llvmlite import ir  # type: ignore[import-untyped]
+    from numba import types
+    from numba.core import cgutils
+    from numba.np.arrayobj import make_array
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         data = cast(Any, make_array)(signature.args[0])(context, builder, arguments[0])
@@ -31,4 +31,4 @@ def _prefetch(context: Any, array: Any, row: Any) -> Any:
 
 
 # Begin to read the cache line where a row of a C-contiguous array begins, without waiting for it.
-prefetch = cast(Callable[[Any, int], None], intrinsic(_prefetch))
+prefetch = cast(Callable[[Any, int], None], instruction(_prefetch))

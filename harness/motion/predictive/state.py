@@ -19,6 +19,7 @@ Record = Any  # one of its elements
 
 LINE = 64  # bytes of a cache line
 NOBODY = -1  # in place of a body, or of a window
+NEVER = int(np.array(np.inf).view(np.int64))  # the bits of the time of what never happens
 
 # A sphere's motion: 64 bytes, one cache line.
 MOTION = np.dtype(
@@ -130,12 +131,17 @@ EVENT_STATE = np.dtype(
 # Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that columns do
 # not overlap.
 LANES = 64
+_COLUMNS = ("gap_x", "gap_y", "gap_z", "velocity_x", "velocity_y", "velocity_z", "reach", "due")
+CANDIDATE_OFFSETS = {name: place * 8 * LANES for place, name in enumerate(_COLUMNS)}
+CANDIDATE_OFFSETS["due_bits"] = CANDIDATE_OFFSETS["due"]  # read as integers
+CANDIDATE_OFFSETS["own"] = len(_COLUMNS) * 8 * LANES  # the sphere that asks: a MOTION whose radius is taken negative
 CANDIDATES = np.dtype(
-    [
-        (name, np.float64, LANES)
-        for name in ("gap_x", "gap_y", "gap_z", "velocity_x", "velocity_y", "velocity_z", "reach", "due")
-    ],
-    align=True,
+    {
+        "names": [*CANDIDATE_OFFSETS],
+        "formats": [*[(np.float64, LANES)] * len(_COLUMNS), (np.int64, LANES), (np.float64, 8)],
+        "offsets": [*CANDIDATE_OFFSETS.values()],
+        "itemsize": len(_COLUMNS) * 8 * LANES + LINE,
+    }
 )
 
 # The neighbours of a sphere: most lists fill one cache line, and none more than two.

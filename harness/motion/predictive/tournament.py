@@ -6,13 +6,9 @@ It works in place, without tuning or horizon: a changed event goes through its m
 
 from __future__ import annotations
 
-import numpy as np
-
 from harness.kernel import step
 from harness.motion.predictive.codes import Event
-from harness.motion.predictive.state import EventQueue, Records
-
-NEVER = int(np.array(np.inf).view(np.int64))
+from harness.motion.predictive.state import NEVER, EventQueue, Records
 
 
 @step

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from harness.report.atlas import AtlasPart, AtlasResults
@@ -26,16 +26,45 @@ def _content(results: Results) -> Content | None:
     values = {
         "summary": _summary(atlas),
         "parts": parts,
+        "overall": figures["overall"],
         "families": [(family, FAMILIES[family]) for family in FAMILIES if family in seen],
         "notes": list(dict.fromkeys(line for r in atlas.records for line in r.document["unsupported"])),
         "left_out": list(dict.fromkeys(line for r in atlas.records for line in r.document["left_out"])),
         "commands": list(dict.fromkeys(record.command for record in atlas.records)),
     }
-    return Content("atlas.html.j2", values, results.records, figures["matrix"], atlas.files)
+    return Content("atlas.html.j2", values, results.records, [*figures["overall"], *figures["matrix"]], atlas.files)
 
 
 def _summary(atlas: AtlasResults) -> list[str]:
-    cells = [cell for part in atlas.parts for cell in part.cells.values()]
+    cells = [cell for part in atlas.parts if part.query == "collision" for cell in part.cells.values()]
+    said = _on_collisions(cells) if cells else []
+    for query in dict.fromkeys(part.query for part in atlas.parts if part.query != "collision"):
+        said += _on_gaps(query, [cell for part in atlas.parts if part.query == query for cell in part.cells.values()])
+    return said
+
+
+def _on_gaps(query: str, cells: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What was found of gaps, or of whether bodies are near."""
+    verdicts, beyond = sum(cell["verdicts"] for cell in cells), sum(cell["beyond"] for cell in cells)
+    said = [
+        f"Asked for the {query}: {plural(verdicts, 'answer')}, each held against exact distances: {number(beyond)} are "
+        "off by more than the engine's tolerance."
+    ]
+    engines = sorted({cell["engine"] for cell in cells})
+    for engine in engines:
+        mine = [cell for cell in cells if cell["engine"] == engine and cell["beyond"]]
+        if mine:
+            worst = max(mine, key=lambda cell: cell["deepest"])
+            count = plural(sum(cell["beyond"] for cell in mine), "answer")
+            said.append(
+                f"{engine} is off by more than its tolerance in {count} on {query}, by {number(worst['deepest'])} of a "
+                f"size at the most ({worst['family']})."
+            )
+    right = [engine for engine in engines if not any(cell["beyond"] for cell in cells if cell["engine"] == engine)]
+    return [*said, f"Never off by more than their tolerance: {', '.join(right)}."] if right else said
+
+
+def _on_collisions(cells: Sequence[Mapping[str, Any]]) -> list[str]:
     verdicts, wrong = sum(cell["verdicts"] for cell in cells), sum(cell["wrong"] for cell in cells)
     beyond = sum(cell["beyond"] for cell in cells)
     said = [
@@ -70,7 +99,8 @@ def _table(part: AtlasPart) -> Table:
     )  # fmt: skip
     note = (
         "Small print is the interval that holds the rate in 95 % (Clopper and Pearson). “Farthest” is the largest gap "
-        "or overlap about which a verdict was wrong. A query is one pose of two bodies, asked right after another."
+        "or overlap about which a verdict was wrong; of distances the largest error, and of a tolerance the largest "
+        "difference of a gap from the limit. A query is one pose of two bodies, asked right after another."
     )
     return Table(f"{part.experiment}, {part.title}", note, columns, rows)
 

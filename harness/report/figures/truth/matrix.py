@@ -36,9 +36,13 @@ def _figure(part: TruthPart) -> Figure:
         f"Answers that are not right, {part.name}",
         f"{len(part.engines)} engines on {len(part.families)} families. {'; '.join(told)}.",
         "Each mark is an engine on a family of cases: the larger, the more of its answers are not right, in %. A line "
-        "stands for none.",
+        "stands for none. “dt” is the step of a collision test that is asked frame by frame.",
         lambda form, drawn: draw_rates(
-            part.engines, part.families, {place: _rate(found) for place, found in cells.items()}, form, drawn
+            list(map(part.heading, part.engines)),
+            part.families,
+            {(part.heading(engine), family): _rate(found) for (engine, family), found in cells.items()},
+            form,
+            drawn,
         ),
         (Key("early or failed", SAFE_STYLE), Key("some missed, late or false", UNSAFE_STYLE)),
         labelled=False,

@@ -1,0 +1,50 @@
+"""The gap kernels of this program in the form of a backend, so that an atlas asks them as it asks every library."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from harness.arrays import Floats, Pairs
+from harness.backends.protocol import NearPairs
+from harness.narrowphase.gap import EXACT, MeshGapShape, mesh_gap_shape
+from harness.narrowphase.pose_gaps import Gaps, Poses, hull_gaps, mesh_gaps, sphere_gaps
+from harness.scene.scene import Scene
+from harness.vocabulary import Query, Shape
+
+OWN = "own"
+"""The name under which they are asked."""
+
+
+class OwnGaps:
+    """What `harness.distance` asks, of the two bodies of a scene."""
+
+    name = OWN
+    shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    queries: tuple[Query, ...] = ("tolerance", "distance")
+
+    def tolerance(self, shape: Shape) -> float:
+        """The gap is known up to rounding of 1e-15 of the sizes and of the distance, several times over."""
+        return 1e-14
+
+    def load(self, scene: Scene) -> None:
+        self._scene = scene
+        self._shape: MeshGapShape | None = None
+        if scene.shape != "sphere" and scene.mesh is not None:
+            self._shape = mesh_gap_shape(scene.mesh)
+
+    def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
+        return self.distances(positions, quaternions, 0.0).pairs
+
+    def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
+        sizes = self._scene.bodies.sizes.tolist()
+        one, other = (Poses(positions[k : k + 1], quaternions[k : k + 1], sizes[k]) for k in (0, 1))
+        found = Gaps(np.empty(1), np.empty((1, 2, 3)))
+        if self._shape is None:
+            sphere_gaps(one, other, EXACT, found)
+        elif self._scene.shape == "hull":
+            hull_gaps(self._shape.mesh.hull, self._shape.mesh.hull, one, other, EXACT, found)
+        else:
+            mesh_gaps(self._shape, self._shape, one, other, EXACT, found)
+        near = found.gaps <= within
+        pairs = np.array([[0, 1]], np.int64)[near]
+        return NearPairs(pairs, found.gaps[near], found.points[near])

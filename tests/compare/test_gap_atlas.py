@@ -1,0 +1,72 @@
+"""The atlas of gaps: exact distances decide, an engine that is off is found, and one that is right is not accused."""
+
+import json
+from fractions import Fraction
+
+import pytest
+
+from harness.cli.surveying import cell_row
+from harness.compare.atlas import survey
+from harness.compare.budget import Budget
+from harness.compare.exact_gap import ExactGap
+from harness.compare.families import family_poses
+from harness.compare.gap_atlas import SURVEYS
+from harness.compare.own_gaps import OWN
+from tests.compare import liars
+from tests.conftest import cube_mesh
+
+FAMILIES = ["random", "grazing", "shared"]
+
+
+def found(query, shape, engines, families=FAMILIES, count=8):
+    made = survey(shape, cube_mesh(), families, count, engines, Budget(), made=SURVEYS[query])
+    json.dumps([cell_row(cell) for cell in made.cells], allow_nan=False)  # as `--json` and the database have them
+    return {(cell.engine, cell.family): (cell.verdicts, cell.beyond) for cell in made.cells}
+
+
+@pytest.mark.parametrize("query", ["distance", "tolerance"])
+@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+def test_the_kernels_and_fcl_are_never_off_by_more_than_their_tolerance(query, shape):
+    cells = found(query, shape, ["fcl", OWN])
+    assert len(cells) == 6
+    assert {beyond for _, beyond in cells.values()} == {0}
+
+
+def test_gaps_that_are_one_percent_too_long_are_found_wherever_bodies_are_apart(tmp_path, monkeypatch):
+    body = """
+        def distances(self, positions, quaternions, within):
+            found = super().distances(positions, quaternions, 2 * within)
+            long = found.gaps * 1.01
+            return found._replace(pairs=found.pairs[long <= within], gaps=long[long <= within], points=None)
+    """
+    monkeypatch.setitem(liars.LIARS, "long-gaps", body)
+    name = liars.install("long-gaps", tmp_path / "plugins", monkeypatch)
+    for query in ("distance", "tolerance"):
+        cells = found(query, "hull", [name], ["random", "deep"], 24)
+        assert cells[name, "random"][1] > 0
+        assert cells[name, "deep"] == (24, 0)  # which all overlap: 0 is 0, however long
+
+
+def test_a_gap_is_at_most_itself_to_the_last_bit():
+    for shape in ("sphere", "hull", "mesh"):
+        for pose_set in family_poses("random", shape, cube_mesh(), 6):
+            for pose in pose_set.poses(pose_set.scene):
+                truth = ExactGap(pose_set.scene, pose)
+                truth.check()
+                if truth.value > 0.0:
+                    assert truth.at_most(truth.value * (1 + 1e-15))
+                    assert truth.at_most(truth.value * (1 - 1e-15)) is False
+                    assert truth.off_by(truth.value) <= 1e-16
+
+
+def test_of_two_cubes_on_an_axis_the_gap_is_what_is_between_their_faces():
+    from dataclasses import replace
+
+    import numpy as np
+
+    (pose_set,) = family_poses("random", "hull", cube_mesh(), 1)
+    (pose,) = pose_set.poses(pose_set.scene)
+    apart = replace(pose, positions=np.array([[0.0, 0, 0], [1.5, 0, 0]]), quaternions=np.eye(4)[[0, 0]])
+    side = 2 * float(pose_set.scene.solid_of(1.0).vertices[:, 0].max())
+    assert ExactGap(pose_set.scene, apart).at_most(1.5 - side + 1e-16)
+    assert not ExactGap(pose_set.scene, apart).at_most(float(Fraction(1.5) - Fraction(side) - Fraction(1, 10**15)))
