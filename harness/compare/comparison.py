@@ -66,8 +66,12 @@ def compare_all(
             budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.seconds:g} s were spent")
             continue
         progress(f"{', '.join(names)}: {what}")
-        for pair, found in _compare_at(pose_set, names, timeout, budget).items():
+        compared, hanging = _compare_at(pose_set, names, timeout, budget)
+        for pair, found in compared.items():
             whole[pair].add(found)
+        names = [name for name in names if name not in hanging]
+        if len(names) < 2:
+            break
     return whole
 
 
@@ -109,7 +113,10 @@ def disagreements(scene: Scene, pose: Pose, names: NamePair) -> list[Case]:
         return asked.disagreements(pose)
 
 
-def _compare_at(pose_set: PoseSet, names: Sequence[str], timeout: float, budget: Budget) -> Found:
+def _compare_at(
+    pose_set: PoseSet, names: Sequence[str], timeout: float, budget: Budget
+) -> tuple[Found, frozenset[str]]:
+    """What was found at these poses, and who hung and is not to be asked about others."""
     shape = pose_set.scene.shape
     whole: Found = {pair: Comparison([Tally(pair, shape)]) for pair in combinations(names, 2)}
     with ExitStack() as processes:
@@ -125,7 +132,7 @@ def _compare_at(pose_set: PoseSet, names: Sequence[str], timeout: float, budget:
         for group in loaded.groups:
             for pair, found in _Questions(pose_set, group, budget, again=True).ask().items():
                 whole[pair].add(found)
-    return whole
+    return whole, loaded.hanging
 
 
 class _Questions:

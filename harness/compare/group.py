@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from harness.arrays import Floats
-from harness.compare.isolated import Facts, Isolated, UnusableError
+from harness.compare.isolated import Facts, HangingError, Isolated, UnusableError
 from harness.compare.tally import NamePair
 from harness.scene.hull import Hull
 from harness.scene.scene import Scene
@@ -48,11 +48,13 @@ class Loaded:
     groups : one for each set of hulls
     unusable : by name, why it cannot take the scene
     claims : by name, what it says of itself that cannot be accepted
+    hanging : those among the unusable that did not end
     """
 
     groups: tuple[Group, ...]
     unusable: dict[str, str]
     claims: dict[str, str]
+    hanging: frozenset[str]
 
 
 def load(scene: Scene, names: Sequence[str], processes: ExitStack, timeout: float) -> Loaded:
@@ -60,12 +62,15 @@ def load(scene: Scene, names: Sequence[str], processes: ExitStack, timeout: floa
     asked: dict[str, Isolated] = {}
     unusable: dict[str, str] = {}
     claims: dict[str, str] = {}
+    hanging: set[str] = set()
 
     def enter(name: str, held: Scene) -> Isolated | None:
         try:
             return processes.enter_context(Isolated(name, held, timeout))
         except UnusableError as error:
             unusable[name] = str(error)
+            if isinstance(error, HangingError):
+                hanging.add(name)
             return None
 
     for name in names:
@@ -88,7 +93,7 @@ def load(scene: Scene, names: Sequence[str], processes: ExitStack, timeout: floa
             if entered is not None:
                 again[name] = entered
         groups.append(Group(held, again, tuple(pair for pair in mine if set(pair) <= set(again))))
-    return Loaded(tuple(group for group in groups if group.pairs), unusable, claims)
+    return Loaded(tuple(group for group in groups if group.pairs), unusable, claims, frozenset(hanging))
 
 
 def unacceptable(facts: Facts, scene: Scene) -> str | None:

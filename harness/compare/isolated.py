@@ -101,6 +101,10 @@ class UnusableError(Exception):
     """The backend cannot take the scene at all, and why."""
 
 
+class HangingError(UnusableError):
+    """It did not take the scene in the time that it has, as it would any other, as far as one can tell."""
+
+
 class Isolated:
     """What is compared under one name, with one scene. A context: leaving it ends the process.
 
@@ -177,7 +181,9 @@ class Isolated:
         try:
             answer = self._child.receive(_LOADING * self._timeout)
             if answer == "timeout":
-                raise UnusableError("it did not load the scene in time")
+                raise HangingError(
+                    f"it did not load the scene within {_LOADING * self._timeout:g} s, and is not asked again"
+                )
             if not isinstance(answer, bytes):
                 raise UnusableError(f"loading the scene, it {self._child.end().instead_of('an answer')}")
             loaded: Facts | str = pickle.loads(answer)

@@ -70,6 +70,10 @@ DEFECTS = {
             open(os.environ["HARNESS_TEST_NOTE"], "w").write(str(started))
             return super().pairs(positions, quaternions)
     """,
+    "hangs-loading": """
+        def load(self, scene):
+            time.sleep(600)
+    """,
     "loads-once": """
         def load(self, scene):
             if os.path.exists(os.environ["HARNESS_TEST_NOTE"]):

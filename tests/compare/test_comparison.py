@@ -101,3 +101,15 @@ def test_backends_that_there_are_not_are_an_error(tmp_path, capsys):
     assert main(["compare", written(tmp_path, "sphere"), "--backends", "fcl,pybulet"]) == 2
     assert 'did you mean "pybullet"' in capsys.readouterr().err
     assert main(["compare", written(tmp_path, "sphere"), "--backends", "fcl"]) == 2
+
+
+def test_a_backend_that_hangs_over_its_first_scene_is_not_asked_about_others(defective):
+    said = []
+    scene = random_scene("sphere", 3, 3.0)
+    names = ("fcl", defective("hangs-loading"))
+    found = compare([flown(scene, 2, 0.1)] * 3, names, said.append, timeout=0.2)
+    assert found.unsupported == [
+        "fcl and hangs-loading are not comparable on shape sphere: hangs-loading: it did not load the scene within "
+        "2 s, and is not asked again"
+    ]
+    assert said == ["fcl, hangs-loading: 3 bodies, shape sphere"]
