@@ -38,3 +38,7 @@ class InputError(Exception):
     def __init__(self, problems: str | Iterable[Problem]) -> None:
         self.problems = (Problem(problems),) if isinstance(problems, str) else tuple(problems)
         super().__init__("\n".join(map(str, self.problems)))
+
+
+class NotInstalledError(InputError):
+    """The input is right, but asks for what this machine does not have: among others it is passed over."""

@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(line, file=sys.stderr)
 
     chosen = _chosen(arguments.backends)
-    experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
+    experiments, meshes = prepare(arguments.paths, overrides_of(arguments), progress)
     if arguments.db is not None:
         _open(arguments.db).close()  # before the work, not after it
     whole = Comparison()

@@ -46,10 +46,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _experiments() -> list[dict[str, Any]]:
-    """Every experiment of the folder; of one that is wrong, how many problems it has."""
+    """Every experiment of the folder; of one that is wrong, how many problems it has; and what it lacks here."""
     from pathlib import Path
 
-    from harness.errors import InputError
+    from harness.errors import InputError, NotInstalledError
     from harness.experiment.load import find_experiments, load, name_of
 
     if not Path(FOLDER).is_dir():
@@ -60,9 +60,12 @@ def _experiments() -> list[dict[str, Any]]:
         return []
     rows: list[dict[str, Any]] = []
     for path in paths:
-        row: dict[str, Any] = {"name": name_of(path), "path": str(path)}
+        row: dict[str, Any] = {"name": name_of(path), "path": str(path), "missing": None}
         try:
             experiment = load(path)
+        except NotInstalledError as error:
+            missing = "; ".join(dict.fromkeys(problem.message for problem in error.problems))
+            row |= {"title": None, "points": None, "runs": None, "tier": None, "problems": 0, "missing": missing}
         except InputError as error:
             row |= {"title": None, "points": None, "runs": None, "tier": None, "problems": len(error.problems)}
         else:
@@ -75,6 +78,8 @@ def _experiments() -> list[dict[str, Any]]:
 def _experiment_line(row: dict[str, Any]) -> str:
     if row["problems"]:
         return f"wrong: `harness validate {row['path']}` says how"
+    if row["missing"]:
+        return f"passed over: {row['missing']}"
     long = ", long" if row["tier"] == "long" else ""
     return f"{row['title']} ({row['runs']} run{'s' * (row['runs'] != 1)}{long})"
 

@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.store.database import Database
 
     selection = _selection(arguments)
-    experiments, meshes = prepare(arguments.paths, overrides_of(arguments))
+    experiments, meshes = prepare(arguments.paths, overrides_of(arguments), lambda line: print(line, file=sys.stderr))
     chosen = [experiment for experiment in experiments if arguments.long or experiment.measure.tier == "default"]
     for left in [experiment.name for experiment in experiments if experiment not in chosen]:
         print(f"{left}: left out, since it is `tier: long`; --long runs it", file=sys.stderr)
@@ -278,7 +278,7 @@ def _print_what_would_be_done(
         time = "no such run was done before, so there is no estimate of time"
     else:
         time = f"about {duration_text(total + START_UP * len(backends))}, from earlier runs of {known} of them"
-    for why in work.lacking:
+    for why in work.lacking.values():
         print(f"points passed over: {why}")
     print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 

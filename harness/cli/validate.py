@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from harness.cli.overrides import add_override_argument, overrides_of
-from harness.errors import InputError, Problem
+from harness.errors import InputError, NotInstalledError, Problem
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,25 +23,30 @@ def run(arguments: argparse.Namespace) -> int:
     from pathlib import Path
 
     from harness.experiment.kind import find_truth_declarations
-    from harness.runner.preparation import examine
+    from harness.runner.preparation import Prepared, examine
     from harness.truth.declaration import load_truth
 
     problems: list[Problem] = []
+    lacking: list[Problem] = []
     truths = find_truth_declarations(arguments.paths)
     for path in truths:
         try:
             declaration = load_truth(path)
+        except NotInstalledError as error:
+            lacking += error.problems
         except InputError as error:
             problems += error.problems
         else:
             count = sum(family.count for family in declaration.families.values())
             print(f"{path}: a set of {count} cases in {len(declaration.families)} families")
     left = [path for path in arguments.paths if not _only_truths(Path(path), truths)]
-    experiments, _, others = examine(left, overrides_of(arguments)) if left else ([], {}, [])
-    for experiment in experiments:
+    found = examine(left, overrides_of(arguments)) if left else Prepared([], {}, [], [])
+    for experiment in found.experiments:
         points, runs = len(experiment.points), experiment.runs
         print(f"{experiment.name}: {points} point{'s' * (points != 1)}, {runs} run{'s' * (runs != 1)}")
-    problems += others
+    for problem in [*lacking, *found.lacking]:
+        print(f"{problem}; what needs it is passed over")
+    problems += found.problems
     if problems:
         raise InputError(problems)
     return 0

@@ -12,7 +12,7 @@ from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from harness.errors import InputError, Problem
+from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.criterion import Criterion
 from harness.experiment.declaration import apply_override, check, declare
 from harness.experiment.document import KEY, LARGEST_FILE, read_document, read_value
@@ -266,6 +266,8 @@ def _locate_meshes(expansion: Expansion, folder: Path, problems: FileProblems) -
         if reference is not None:
             try:
                 located[reference] = locate_mesh(reference, folder)
+            except NotInstalledError as error:
+                problems.add_lacking(origin, str(error))
             except InputError as error:
                 problems.add(origin, str(error))
     return located

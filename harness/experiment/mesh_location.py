@@ -11,12 +11,14 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from harness.errors import InputError
+from harness.errors import InputError, NotInstalledError
 from harness.experiment.messages import near, shown
 
 PACKAGE = "package:"
 SUFFIXES = (".ply", ".obj", ".stl", ".off", ".glb")  # of what is read, which alone is suggested
 _MOST_LISTED = 1000
+# what brings a package whose own name does not say so
+_BROUGHT_BY = {"pybullet_data": "pip install 'harness[pybullet]'"}
 
 
 def locate_mesh(reference: str, beside: Path) -> Path:
@@ -34,6 +36,8 @@ def locate_mesh(reference: str, beside: Path) -> Path:
 
     Raises
     ------
+    NotInstalledError
+        If it lies in a package that is not installed.
     InputError
         If there is no such file, or it is not where meshes may be.
     """
@@ -68,7 +72,8 @@ def _package_folder(name: str, reference: str) -> Path:
     except (ImportError, ValueError):
         found = None
     if found is None:
-        raise InputError(f"the package {shown(name)} is not installed")
+        how = f"; {_BROUGHT_BY[name]} brings it" if name in _BROUGHT_BY else ""
+        raise NotInstalledError(f"the package {shown(name)} is not installed{how}")
     # A folder without code is a package to Python too, any folder where the program was started among them.
     if found.origin is None or not found.submodule_search_locations:
         raise InputError(f"{shown(name)} is not a package that could hold data")

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from harness.errors import InputError, Problem
+from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.document import KEY, Document, KeyPath
 from harness.experiment.messages import flow, printable, sentence
 
@@ -37,10 +37,15 @@ class FileProblems:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.found = list(document.problems)
+        self.lacking: list[Problem] = []
 
     def add(self, origin: Origin, message: str) -> None:
         """Keep a problem with the value from `origin`."""
         self.found.append(problem_at(self.document, origin, message))
+
+    def add_lacking(self, origin: Origin, message: str) -> None:
+        """Keep that the value from `origin` asks for what is not installed."""
+        self.lacking.append(problem_at(self.document, origin, message))
 
     def add_errors(self, origin: Origin, error: ValidationError, model: Any = None) -> None:
         """Keep all that pydantic found wrong with the value from `origin`."""
@@ -55,7 +60,12 @@ class FileProblems:
         self.add(place, sentence(found, model))
 
     def raise_any(self) -> None:
-        """Raise all problems in the order of the file, as one `InputError`, if there are any."""
+        """Raise all problems in the order of the file, as one `InputError`, if there are any.
+
+        Where there are none, but something is not installed, that is a `NotInstalledError`.
+        """
+        if self.lacking and not self.found:
+            raise NotInstalledError(self.lacking)
         if not self.found:
             return
         ordered = sorted(dict.fromkeys(self.found), key=lambda problem: (problem.line or 0, problem.column or 0))

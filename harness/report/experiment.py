@@ -62,6 +62,11 @@ class ExperimentPage:
         """The page, from the pages at the top."""
         return f"{self.folder}/index.html"
 
+    @property
+    def up(self) -> str:
+        """The folder of the report, from this page."""
+        return "../" * len(self.folder.parts)
+
     @cached_property
     def measured(self) -> Arrangement:
         """Its points as series, before it is known at which level two of them are told apart."""

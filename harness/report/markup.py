@@ -13,12 +13,18 @@ from harness.report.drawing import palette
 from harness.report.figure import Figure
 from harness.report.table import Table
 
-_SCRIPTS = ("sort.js", "finder.js")
+_SCRIPTS = ("sort.js", "finder.js", "parquet.js", "explore.js")
 
 
 def render(template: str, **values: Any) -> Markup:
     """A template of `harness/report/templates/`, filled in. What does not come as Markup is escaped."""
     return Markup(_environment().get_template(template).render(**values))
+
+
+def script() -> str:
+    """The one script of a report: conveniences, without which every page reads in full."""
+    templates = files("harness.report") / "templates"
+    return "\n".join((templates / name).read_text(encoding="utf-8") for name in _SCRIPTS)
 
 
 def section_html(identity: str, heading: str, *parts: Table | Figure | Markup | str) -> Markup:
@@ -44,7 +50,6 @@ def _environment() -> Environment:
     templates = files("harness.report") / "templates"
     environment.globals |= {
         "style": Markup((templates / "style.css").read_text(encoding="utf-8")),
-        "script": Markup("\n".join((templates / name).read_text(encoding="utf-8") for name in _SCRIPTS)),
         "light": Markup(palette.variables(dark=False)),
         "dark": Markup(palette.variables(dark=True)),
         "outlines": [palette.OUTLINES[marker] for marker in palette.MARKERS],

@@ -31,14 +31,47 @@ def missing_runs(records: Sequence[ExperimentRecord], runs: pd.DataFrame) -> Mar
     missing = listed.difference(zip(runs["point"], runs["repeat"], strict=True))
     if missing:
         lack = f"{len(missing)} of {len(listed)} runs {'is' if len(missing) == 1 else 'are'} missing"
-        why = "" if _broken_off(records) else ": they were not asked for, or their backend is not installed"
-        return Markup("<strong>{}</strong>{}; <code>harness sweep</code> does the rest.").format(lack, why)
+        return Markup("<strong>{}</strong>{}.").format(lack, _why(records, missing))
     if any(not is_judged(row) for record in records for row in (*record.expectations, *record.claims)):
         return Markup(
             "<strong>The sweep did not come to its end</strong>, and has judged nothing of what it measured; "
             "<code>harness sweep</code> does the rest."
         )
     return None
+
+
+def _why(records: Sequence[ExperimentRecord], missing: set[tuple[str, int]]) -> Markup:
+    """Of those whose backend the sweep did not find, what it said of that; of the others, what does them."""
+    told = _passed_over(records)
+    passed = [key for key, _ in missing if key in told]
+    rest = len(missing) - len(passed)
+    does = Markup("; <code>harness sweep</code> does the rest")
+    parts = Markup("")
+    if passed:
+        reasons = "; ".join(sorted({told[key] for key in passed}))
+        parts = Markup(": {} passed over ({})").format(f"{len(passed)} {_were(len(passed))}", reasons)
+    if not rest or _broken_off(records):
+        return parts + (does if rest else "")
+    if not passed and any("lacking" not in record.specification for record in records):  # of an earlier version
+        return Markup(
+            ": they were not asked for, or their backend is not installed; <code>harness sweep</code> does those that "
+            "it can, and says what brings the backends of the others"
+        )
+    return Markup("{}{} {} not asked for{}").format(parts, "," if passed else ":", f"{rest} {_were(rest)}", does)
+
+
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
+
+
+def _passed_over(records: Sequence[ExperimentRecord]) -> dict[str, str]:
+    """By point, why the sweep that listed it could not use its backend."""
+    return {
+        point.key: why
+        for record in records
+        for point in record.points
+        if (why := (record.specification.get("lacking") or {}).get(point.parameters.get("backend"))) is not None
+    }
 
 
 def is_judged(row: VerdictRow) -> bool:

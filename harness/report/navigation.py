@@ -33,8 +33,10 @@ class Navigation:
 
     def on_experiment(self, page: ExperimentPage) -> list[Link]:
         """As they stand on the page of an experiment, which comes last."""
-        up = "../" * len(page.folder.parts)
-        return [*(replace(link, href=f"{up}{link.href}") for link in self.links), Link(page.record.name, "", here=True)]
+        return [
+            *(replace(link, href=f"{page.up}{link.href}") for link in self.links),
+            Link(page.record.name, "", here=True),
+        ]
 
 
 def navigation(parts: Sequence[Section], pages: Sequence[Page]) -> Navigation:

@@ -16,6 +16,7 @@ from harness.errors import InputError
 from harness.report.drawing.canvas import FileFormat
 from harness.report.experiment import ExperimentPage, csv
 from harness.report.markup import render as rendered
+from harness.report.markup import script
 from harness.report.missing import missing_runs
 from harness.report.navigation import OVERVIEW, Navigation, navigation
 from harness.report.overview import Overview
@@ -72,6 +73,7 @@ def render(database: str | Path, formats: Sequence[FileFormat] = ()) -> Iterator
         rendered(
             "index.html.j2",
             title="Overview · harness",
+            root="",
             navigation=links.on(OVERVIEW),
             overview=overview,
             sections=written,
@@ -88,6 +90,7 @@ def render(database: str | Path, formats: Sequence[FileFormat] = ()) -> Iterator
             rendered(
                 content.template,
                 title=f"{other.title} · harness",
+                root="",
                 navigation=links.on(other.file),
                 footer=_footer(content.records),
                 missing=missing,
@@ -98,6 +101,7 @@ def render(database: str | Path, formats: Sequence[FileFormat] = ()) -> Iterator
             yield figure.file, figure.document
             yield from map(figure.as_file, formats)
         yield from content.files.items()
+    yield "report.js", script()
     yield "findings.md", summary(results)
     yield "runs.csv", csv(results.runs)
 
@@ -106,6 +110,7 @@ def _experiment(page: ExperimentPage, links: Navigation) -> Iterator[tuple[str, 
     text = rendered(
         "experiment.html.j2",
         title=f"{page.record.title} · harness",
+        root=page.up,
         navigation=links.on_experiment(page),
         page=page,
         sections=sections_of("experiment", page),

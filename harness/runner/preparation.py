@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
 from harness.backends.registry import names
 from harness.backends.statement import missing
-from harness.errors import InputError, Problem
+from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.experiment import Experiment
 from harness.experiment.load import find_experiments, load
 from harness.experiment.messages import listed, near, shown
@@ -20,26 +20,42 @@ from harness.scene.mesh_child import open_meshes
 
 
 class Prepared(NamedTuple):
-    """The valid experiments, their meshes by file, and the problems of the others."""
+    """The valid experiments, their meshes by file, the problems of the others, and what others lack on this machine."""
 
     experiments: list[Experiment]
     meshes: dict[Path, Mesh]
     problems: list[Problem]
+    lacking: list[Problem]
 
 
 def prepare(
-    paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object]
+    paths: Iterable[str | PathLike[str]],
+    overrides: Mapping[str, object],
+    tell: Callable[[str], None] = lambda _: None,
 ) -> tuple[list[Experiment], dict[Path, Mesh]]:
     """Load every experiment that the paths name, and open all of their meshes in one child process.
 
+    Those whose meshes lie in a package that is not installed are passed over.
+
+    Parameters
+    ----------
+    paths, overrides : as the user gave them
+    tell : is given a sentence on each that is passed over
+
     Raises
     ------
+    NotInstalledError
+        If all of them would be passed over.
     InputError
         With everything that is wrong with any of them.
     """
-    experiments, meshes, problems = examine(paths, overrides)
+    experiments, meshes, problems, lacking = examine(paths, overrides)
     if problems:
         raise InputError(problems)
+    if not experiments:
+        raise NotInstalledError(lacking)
+    for problem in lacking:
+        tell(f"{problem}; its points are passed over")
     return experiments, meshes
 
 
@@ -53,9 +69,12 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     """
     loaded: list[Experiment] = []
     problems: list[Problem] = []
+    lacking: list[Problem] = []
     for path in find_experiments(paths):
         try:
             loaded.append(load(path, overrides))
+        except NotInstalledError as error:
+            lacking += error.problems
         except InputError as error:
             problems += error.problems
     meshes, broken = _open_meshes(loaded)
@@ -66,7 +85,7 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
             valid.append(experiment)
-    return Prepared(valid, meshes, list(dict.fromkeys(problems)))
+    return Prepared(valid, meshes, list(dict.fromkeys(problems)), lacking)
 
 
 def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], dict[Path, str]]:

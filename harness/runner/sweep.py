@@ -97,7 +97,7 @@ class Work(NamedTuple):
     wanted: set[str]
     schedule: Schedule
     estimate: Estimate
-    lacking: list[str]
+    lacking: dict[str, str]
 
 
 def work_of(
@@ -149,7 +149,7 @@ def work_of(
     jobs = [job if job.control else replace(job, on_demand=on_demand[job.key]) for job in found.jobs]
     found = found._replace(jobs=jobs)
     estimate = Estimate(history.durations() if history else {}, parameters)
-    return Work(keys, wanted, found, estimate, list(lacking.values()))
+    return Work(keys, wanted, found, estimate, lacking)
 
 
 def sweep(
@@ -183,8 +183,8 @@ def sweep(
     machine = machine_facts()
     machine["fingerprint"] = fingerprint(machine)
     number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions(packages()))
-    listed = {e.name: database.list_experiment(number, **_listing(e, work.keys, meshes)) for e in experiments}
-    summary = Summary(work.schedule.kept, lacking=work.lacking)
+    listed = {e.name: database.list_experiment(number, **_listing(e, work, meshes)) for e in experiments}
+    summary = Summary(work.schedule.kept, lacking=list(work.lacking.values()))
     progress.begin(work.schedule.jobs, work.estimate)
     with executor or LocalExecutor() as opened:
         for finished in opened.run(work.schedule.jobs, meshes, progress.before):
@@ -312,8 +312,9 @@ def _parameters(point: Point, mesh: Mesh | None) -> dict[str, Any]:
     return {**point.parameters, **derived_parameters(point, mesh)}
 
 
-def _listing(experiment: Experiment, keys: Mapping[int, str], meshes: Meshes) -> dict[str, Any]:
+def _listing(experiment: Experiment, work: Work, meshes: Meshes) -> dict[str, Any]:
     """What the database keeps of an experiment, as arguments of `Database.list_experiment`."""
+    named = {point.engine.backend for point in experiment.points}
     return {
         "name": experiment.name,
         "title": experiment.title,
@@ -327,9 +328,10 @@ def _listing(experiment: Experiment, keys: Mapping[int, str], meshes: Meshes) ->
             "swept": list(experiment.swept),
             "measure": experiment.measure.model_dump(mode="json"),
             "path": str(experiment.path),
+            "lacking": {name: why for name, why in work.lacking.items() if name in named},
         },
         "points": [
-            PointRow(keys[id(point)], _parameters(point, mesh_of(experiment, point, meshes)))
+            PointRow(work.keys[id(point)], _parameters(point, mesh_of(experiment, point, meshes)))
             for point in experiment.points
         ],
     }

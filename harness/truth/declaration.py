@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field, ValidationError
 
-from harness.errors import InputError, Problem
+from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
 from harness.experiment.document import read_document
 from harness.experiment.mesh_location import locate_mesh
@@ -105,6 +105,8 @@ def load_truth(path: Path) -> TruthDeclaration:
         for place, reference in enumerate(family.meshes):
             try:
                 meshes[reference] = locate_mesh(reference, path.parent)
+            except NotInstalledError as error:
+                problems.add_lacking(("families", name, "meshes", place), str(error))
             except InputError as error:
                 problems.add(("families", name, "meshes", place), str(error))
     problems.raise_any()

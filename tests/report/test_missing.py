@@ -16,13 +16,15 @@ METHOD = {"backend": "fcl", "algorithm": "grid", "shape": "hull"}
 METRICS = {"run_seconds": (0.5, "s"), "pair_tests": (10.0, "1"), "energy_drift": (0.0, "1"), "escaped": (0.0, "1")}
 
 
-def swept(path, names, runs, *, finished=False, repeats=5):
+def swept(path, names, runs, *, finished=False, repeats=5, lacking=None):
     """A results file of experiments with two points each, of which so many runs were made."""
     with Database.open(path) as database:
         sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"processor": "Example"}, {})
         for name in names:
             points = [PointRow(f"{name}-{count}", {"count": count, **METHOD}) for count in (5, 10)]
             specification = {"expect": EXPECT, "claims": CLAIMS, "swept": ["count"], "measure": {"repeats": repeats}}
+            if lacking is not None:
+                specification["lacking"] = lacking
             database.list_experiment(sweep, name, name.capitalize(), None, "title: x\n", specification, points)
         every = [(name, count, repeat) for name in names for count in (5, 10) for repeat in range(repeats)]
         for name, count, repeat in every[:runs]:
@@ -43,13 +45,28 @@ def of(path):
         (29, False, "<strong>1 of 30 runs is missing</strong>; <code>harness sweep</code> does the rest."),
         (0, False, "<strong>30 of 30 runs are missing</strong>; <code>harness sweep</code> does the rest."),
         (12, True, "<strong>18 of 30 runs are missing</strong>: they were not asked for, or their backend is not "
-                   "installed; <code>harness sweep</code> does the rest."),
+                   "installed; <code>harness sweep</code> does those that it can, and says what brings the backends of "
+                   "the others."),
         (30, False, "<strong>The sweep did not come to its end</strong>, and has judged nothing of what it measured; "
                     "<code>harness sweep</code> does the rest."),
     ],
 )  # fmt: skip
 def test_what_is_missing_is_said_with_how_much_there_is_to_do(tmp_path, runs, finished, said):
     assert of(swept(tmp_path / "x.db", ["a", "b", "c"], runs, finished=finished)) == said
+
+
+@pytest.mark.parametrize(
+    ("lacking", "runs", "said"),
+    [
+        ({}, 6, ": 4 were not asked for; <code>harness sweep</code> does the rest."),
+        ({"fcl": "it is not installed; pip install 'x[y]'"}, 9,
+         ": 1 was passed over (it is not installed; pip install &#39;x[y]&#39;)."),
+        ({"drake": "it is not installed"}, 9, ": 1 was not asked for; <code>harness sweep</code> does the rest."),
+    ],
+)  # fmt: skip
+def test_of_what_was_passed_over_it_is_said_what_brings_it(tmp_path, lacking, runs, said):
+    path = swept(tmp_path / "x.db", ["a"], runs, finished=True, lacking=lacking)
+    assert of(path).endswith(said)
 
 
 def test_a_run_that_experiments_share_is_missing_once(tmp_path):

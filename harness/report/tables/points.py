@@ -71,7 +71,7 @@ def _points_table(arrangement: Arrangement, name: str, note: str, metrics: Seque
             rows.append(tuple(row))
     left = len(rows) - _MOST_ROWS
     if left > 0:
-        note += f" The first {_MOST_ROWS} points; {number(left)} more are in the CSV file."
+        note += f" The first {_MOST_ROWS} points; {number(left)} more are in the table of all points."
     return Table(name, note, tuple(columns), tuple(rows[:_MOST_ROWS]))
 
 
