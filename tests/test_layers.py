@@ -17,6 +17,7 @@ BASE = {
     "errors",
     "kernel",
     "kernel_cache",
+    "kept_files",
     "modules",
     "process_limits",
     "python_child",

@@ -182,7 +182,8 @@ def _loader(module: str) -> Callable[[], type[Backend]]:
 
 def _constants(file: Path) -> Iterator[tuple[str, str]]:
     """The names at the top of a file to which a word or another name is assigned, each with that."""
-    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+    text = file.read_text(encoding="utf-8")
+    for node in ast.parse(text).body if "BACKEND" in text else ():  # else its parsing would be for nothing
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             if isinstance(node.value, ast.Constant):
                 yield node.targets[0].id, str(node.value.value)

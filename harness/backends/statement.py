@@ -1,6 +1,7 @@
 """What a backend says of itself: why it cannot be used, or its shapes, tolerances and approximations.
 
-Those of this package are asked here. A stranger's is imported in a process of its own, so that one that exits, hangs
+Those of this package are asked here, once for all commands as long as nothing is installed or removed: their libraries
+take a second to import. A stranger's is imported in a process of its own, so that one that exits, hangs
 or prints costs its own line only:
 
     python -m harness.backends.statement FD NAME
@@ -8,6 +9,7 @@ or prints costs its own line only:
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import sys
@@ -18,6 +20,8 @@ from functools import lru_cache
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, queries, units
 from harness.child_process import Channel, Child
+from harness.kept_files import keep, kept
+from harness.kernel_cache import PACKAGE
 from harness.process_limits import isolate
 from harness.vocabulary import Shape
 
@@ -77,7 +81,7 @@ def approximation(name: str, shape: Shape) -> str | None:
     ------
     BackendError
     """
-    if _process_may_be_lost or registry.ours(name):
+    if _process_may_be_lost:
         return approximations(registry.create(name)).get(shape)
     said = statement(name, NEEDED)
     if said.missing is not None:
@@ -96,7 +100,38 @@ _process_may_be_lost = False
 
 @lru_cache(maxsize=32)
 def _asked(name: str, seconds: float, path: tuple[str, ...]) -> Statement:
-    return _say(name) if registry.ours(name) else _say_elsewhere(name, seconds)
+    return _say_once(name, path) if registry.ours(name) else _say_elsewhere(name, seconds)
+
+
+def _say_once(name: str, path: tuple[str, ...]) -> Statement:
+    """What it says, as long as its sources and what can be imported are the same; why it is missing, each time anew."""
+    known = hashlib.sha256(f"{name} {sys.version}".encode())
+    for file in sorted((PACKAGE / "backends").glob("*.py")):
+        known.update(file.read_bytes())
+    for folder in path:
+        known.update("\n".join(_importable(folder)).encode("utf-8", "surrogateescape"))
+    key = f"{known.hexdigest()[:40]}.json"
+    content = kept("statements", key)
+    if content is not None and (said := _read(content)) is not None:
+        return said
+    said = _say(name)
+    if said.missing is None:
+        keep("statements", key, json.dumps(asdict(said)).encode())
+    return said
+
+
+def _importable(folder: str) -> list[str]:
+    """What a folder of `sys.path` holds that can be imported or says what is installed, with its version."""
+    try:
+        names = sorted(os.listdir(folder))
+    except OSError:  # an archive, or nothing
+        return []
+    ends = (".py", ".so", ".pth", "-info")
+    return [
+        name
+        for name in names
+        if name.endswith(ends) or ("." not in name and os.path.exists(os.path.join(folder, name, "__init__.py")))
+    ]
 
 
 def _say(name: str) -> Statement:
@@ -125,11 +160,16 @@ def _say_elsewhere(name: str, seconds: float) -> Statement:
             return Statement(f"importing it did not end within {seconds:g} s")
         if not isinstance(answer, bytes):
             return Statement(f"importing it ended its process with {child.end()}")
+    return _read(answer) or Statement("what it says of itself is garbage")
+
+
+def _read(said: bytes) -> Statement | None:
+    """A statement that was written as JSON; None where this is none."""
     try:
-        said = json.loads(answer)
-        return Statement(**said | {"queries": tuple(said["queries"])})
+        facts = json.loads(said)
+        return Statement(**facts | {"queries": tuple(facts["queries"])})
     except (ValueError, TypeError, LookupError):
-        return Statement("what it says of itself is garbage")
+        return None
 
 
 def _one_line(text: str) -> str:

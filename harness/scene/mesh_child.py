@@ -22,8 +22,8 @@ import numpy as np
 from harness.child_process import Channel, Child, Ending
 from harness.errors import InputError, Problem
 from harness.process_limits import isolate, limit
-from harness.scene.hull import Hull
 from harness.scene.mesh import Mesh
+from harness.scene.mesh_cache import arrays_of, facts_of, keep_mesh, kept_mesh, key_of, mesh_of
 
 GIB = 1024**3
 # For the imports, on a machine with other things to do; nothing of a stranger's is read before.
@@ -31,7 +31,7 @@ START_SECONDS = 120.0
 
 
 def open_meshes(paths: Sequence[Path], memory: int = 2 * GIB, timeout: float = 60.0) -> dict[Path, Mesh | str]:
-    """Read mesh files in a child process.
+    """Read mesh files in a child process, but for those that were read before and are kept.
 
     Parameters
     ----------
@@ -45,12 +45,19 @@ def open_meshes(paths: Sequence[Path], memory: int = 2 * GIB, timeout: float = 6
         For each path its `Mesh`, or a sentence that says why there is none: what is wrong with the file, or that
         reading it took too much memory, took too long, or crashed.
     """
-    results: dict[Path, Mesh | str] = {}
-    waiting = list(dict.fromkeys(paths))
+    keys = {path: key_of(path) for path in paths}
+    kept = {path: kept_mesh(key) for path, key in keys.items() if key is not None}
+    results: dict[Path, Mesh | str] = {path: mesh for path, mesh in kept.items() if mesh is not None}
+    waiting = [path for path in keys if path not in results]
     while waiting:
         results |= _read_some(waiting, memory, timeout)
         waiting = [path for path in waiting if path not in results]
-    return results
+    for path, key in keys.items():
+        mesh = results[path]
+        # a file that has changed meanwhile is not what the key says
+        if key is not None and kept[path] is None and isinstance(mesh, Mesh) and key_of(path) == key:
+            keep_mesh(key, mesh)
+    return {path: results[path] for path in keys}
 
 
 def open_all(paths: Iterable[Path]) -> dict[Path, Mesh]:
@@ -120,22 +127,8 @@ def _received(said: Mapping[str, Any]) -> Mesh | str:
     if "error" in said:
         return str(said["error"])
     with np.load(said["file"], allow_pickle=False) as arrays:
-        loaded = [arrays[name] for name in ("vertices", "faces", "hull_vertices", "hull_faces")]
-    for array in loaded:
-        array.setflags(write=False)
-    vertices, faces, hull_vertices, hull_faces = loaded
-    return Mesh(
-        name=said["name"],
-        vertices=vertices,
-        faces=faces,
-        hull=Hull(hull_vertices, hull_faces),
-        digest=said["digest"],
-        watertight=said["watertight"],
-        convex=said["convex"],
-        notes=tuple(said["notes"]),
-        diameter=said["diameter"],
-        flat=said["flat"],
-    )
+        loaded = [arrays[name] for name in arrays.files]
+    return mesh_of(said, loaded)
 
 
 def _serve(answers: Channel, folder: Path, memory: int, timeout: float, paths: Sequence[Path]) -> None:
@@ -162,23 +155,8 @@ def _serve(answers: Channel, folder: Path, memory: int, timeout: float, paths: S
 
 def _sent(mesh: Mesh, file: Path) -> dict[str, object]:
     """The answer for a mesh; its arrays are in the file then."""
-    np.savez(
-        file,
-        vertices=mesh.vertices,
-        faces=mesh.faces,
-        hull_vertices=mesh.hull.vertices,
-        hull_faces=mesh.hull.faces,
-    )
-    return {
-        "file": str(file),
-        "name": mesh.name,
-        "digest": mesh.digest,
-        "watertight": mesh.watertight,
-        "convex": mesh.convex,
-        "notes": mesh.notes,
-        "diameter": mesh.diameter,
-        "flat": mesh.flat,
-    }
+    np.savez(file, *arrays_of(mesh))
+    return {"file": str(file), **facts_of(mesh)}
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from harness.backends import registry
-from harness.backends.statement import approximation, missing, statement
+from harness.backends.statement import Statement, _asked, approximation, missing, statement
 from harness.cli.main import main
 from tests.runner.hostile_plugins import install
 
@@ -62,6 +62,25 @@ def test_it_is_asked_once(installed):
     began = time.process_time()
     assert statement("odd", 50.0) is first
     assert time.process_time() - began < 0.05
+
+
+def test_one_of_ours_is_asked_once_for_all_commands_until_something_is_installed(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    folder = tmp_path / "harness" / "statements"
+    _asked.cache_clear()
+    said = statement("trimesh")
+    (file,) = folder.iterdir()
+    with monkeypatch.context() as changed:
+        changed.setattr("harness.backends.statement._say", lambda _: Statement("not there"))
+        _asked.cache_clear()
+        assert statement("trimesh") == said
+        (tmp_path / "trimesh.py").write_text("")
+        changed.syspath_prepend(str(tmp_path))
+        assert statement("trimesh").missing == "not there"
+        assert list(folder.iterdir()) == [file]  # why one is missing is found out each time
+    file.write_text("{")
+    _asked.cache_clear()
+    assert statement("trimesh") == said
 
 
 def test_a_list_names_all_the_others_beside_one_that_exits(installed, capsys):

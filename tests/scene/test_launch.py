@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 from scipy.stats import kstest
 
+from harness.scene import random_packing
 from harness.scene.box import Box
 from harness.scene.lattice import sites
 from harness.scene.launch import PlacementError, directions, orientations, place
@@ -74,6 +75,20 @@ def test_the_same_state_of_the_generator_gives_the_same_places():
         one, two = (place(radii, box, np.random.default_rng(7), overlap=False) for _ in range(2))
         assert np.array_equal(one, two)
         assert not np.array_equal(one, place(radii, box, np.random.default_rng(8), overlap=False))
+
+
+@pytest.mark.parametrize("ratio", [1.0, 3.0, 10.0])
+@pytest.mark.parametrize("packing", [0.05, 0.29])
+def test_without_a_kernel_a_few_bodies_are_put_to_the_same_places(packing, ratio, monkeypatch):
+    for count in (1, 2, 40, 150):
+        radii = np.sort(np.random.default_rng(count).uniform(1.0, ratio, count))[::-1].copy()
+        half = np.maximum(box_for(radii, packing, (1.0, 1.0, 1.4)).half, radii[0])
+        places = []
+        for few in (0, random_packing.FEW):
+            monkeypatch.setattr(random_packing, "FEW", few)
+            rng = np.random.default_rng(7)
+            places.append((random_packing.add_at_random(radii, half, rng).tobytes(), rng.random()))
+        assert places[0] == places[1]
 
 
 def test_eight_bodies_fill_a_box_of_two_diameters_exactly_and_a_ninth_finds_no_room():
