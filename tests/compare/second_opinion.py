@@ -50,12 +50,12 @@ def intersect(first, second):
 def opinions(count, meshes=MESHES, families=FAMILIES):
     """(poses, those at which they differ, of those the ones that rounding does not explain)."""
     asked, differ, unexplained = 0, [], []
-    each = -(-count // (len(meshes) * len(families)))
+    kinds = [(name, family) for name in meshes for family in families]
+    kinds = [kind for kind in kinds if kind[0] == "cube" or kind[1] != "contained"]  # nothing is inside of what is thin
+    each = -(-count // len(kinds))
     for name in meshes:
         mesh = MESHES[name]()
-        for family in families:
-            if name != "cube" and family == "contained":  # nothing is inside of what is so thin
-                continue
+        for family in (family for kind, family in kinds if kind == name):
             for poses in family_poses(family, "mesh", mesh, each):
                 sizes = poses.scene.bodies.sizes.tolist()
                 for pose in poses.poses(poses.scene):
