@@ -58,6 +58,7 @@ class Surveyed:
 
     def documents(self) -> Iterator[tuple[tuple[str, str], dict[str, Any]]]:
         """What the database keeps of each engine."""
+        rows_of_all = self.cells()
         for engine in dict.fromkeys(cell.engine for cell in self.atlas.cells):
             mine = [place for place, row in enumerate(self.rows) if row.case.wrong == engine]
             found = Comparison(
@@ -67,7 +68,7 @@ class Surveyed:
                 left_out=self.found.left_out,
             )
             rows = [self.rows[place] for place in mine]
-            cells = [cell for cell in self.cells() if cell["engine"] == engine]
+            cells = [cell for cell in rows_of_all if cell["engine"] == engine]
             for cell in cells:
                 cell["case"] = mine.index(cell["case"]) if cell["case"] is not None else None
             shown = [

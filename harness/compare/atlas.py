@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import betaincinv
 
 from harness.compare.budget import Budget
 from harness.compare.comparison import MOST_FAILURES
@@ -69,8 +69,10 @@ class Cell:
         """Wrong verdicts in a million, and the interval of Clopper and Pearson that holds the rate in 95 %."""
         if not self.verdicts:
             return float("nan"), float("nan"), float("nan")
-        found = stats.binomtest(self.wrong, self.verdicts).proportion_ci(_CONFIDENCE, method="exact")
-        return 1e6 * self.wrong / self.verdicts, 1e6 * float(found.low), 1e6 * float(found.high)
+        wrong, right, tail = self.wrong, self.verdicts - self.wrong, (1.0 - _CONFIDENCE) / 2.0
+        low = betaincinv(wrong, right + 1, tail) if wrong else 0.0
+        high = betaincinv(wrong + 1, right, 1.0 - tail) if right else 1.0
+        return 1e6 * wrong / self.verdicts, 1e6 * float(low), 1e6 * float(high)
 
 
 @dataclass

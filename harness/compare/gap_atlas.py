@@ -76,9 +76,9 @@ class GapSurvey(Survey):
                 continue
             truth.check()  # before an engine is accused
             cell.wrong += 1
-            cell.deepest = max(cell.deepest, error / float(scene.bodies.sizes.min()))
+            cell.deepest = max(cell.deepest, float(error) / float(scene.bodies.sizes.min()))
             tolerance = one.facts.hulls_tolerance if one.facts.hulls else one.facts.tolerance
-            cell.beyond += error > band(scene, tolerance, pose, _BODIES)
+            cell.beyond += bool(error > band(scene, tolerance, pose, _BODIES))
 
     def limit_of(self, scene: Scene, truth: ExactGap, place: int) -> float:
         """m, up to which bodies count as near."""

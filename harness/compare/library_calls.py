@@ -111,14 +111,12 @@ return bool(manager.in_collision_internal())
 
 _PARRY = """
 def turned(place, quaternion):
-    w, x, y, z = quaternion
-    pose = np.eye(4)
-    pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    (w, x, y, z), pose = quaternion, np.eye(4)
+    pose[:3, :3] = [[x * x - y * y - z * z + w * w, 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                    [2 * (x * y + z * w), -x * x + y * y - z * z + w * w, 2 * (y * z - x * w)],
+                    [2 * (x * z - y * w), 2 * (y * z + x * w), -x * x - y * y + z * z + w * w]]
     pose[:3, 3] = place
     return pose
-
 {make}
 world = py_parry3d.CollisionWorld([py_parry3d.CollisionGroup(name, [shape]) for name, shape in shapes.items()])
 return bool(world.check({{"a": turned(P, Q), "b": turned(R, S)}}, [("a", "b", 0.0)])[0])
@@ -129,6 +127,20 @@ solids = {"a": trimesh.Trimesh(A, FACES_A, process=False), "b": trimesh.Trimesh(
 shapes = {name: hull(solid) for name, solid in solids.items()}"""
 _PARRY_MESH = """mesh = py_parry3d.TriMesh
 shapes = {"a": mesh(A, FACES_A.astype("u4")), "b": mesh(B, FACES_B.astype("u4"))}"""
+_DRAKE = """
+scene, poses = drake.SceneGraph(), drake.FramePoseVector()
+source = scene.RegisterSource("bodies")
+for name, points, faces, place, turn in (("a", A, FACES_A, P, Q), ("b", B, FACES_B, R, S)):
+    lines = ["v %r %r %r" % (*v,) for v in points.tolist()] + ["f %d %d %d" % (*f,) for f in faces + 1]
+    mesh = drake.InMemoryMesh(mesh_file=drake.MemoryFile("\\n".join([*lines, ""]), ".obj", "hull"))
+    frame = scene.RegisterFrame(source, drake.GeometryFrame(name))
+    instance = drake.GeometryInstance(drake.RigidTransform(), drake.Convex(mesh, 1.0), name)
+    scene.AssignRole(source, scene.RegisterGeometry(source, frame, instance), drake.ProximityProperties())
+    poses.set_value(frame, drake.RigidTransform(drake.Quaternion(turn / np.linalg.norm(turn)), place))
+context = scene.CreateDefaultContext()
+scene.get_source_pose_port(source).FixValue(context, poses)
+return bool(scene.get_query_output_port().Eval(context).ComputePointPairPenetration())
+"""
 _RAPIER = """
 colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
 middle = (np.array(P) + R) / 2  # single precision has few digits to lose
@@ -174,6 +186,9 @@ CALLS: dict[tuple[str, Shape], Call] = {
     ("trimesh", "hull"): _trimesh(),
     ("trimesh", "mesh"): _trimesh(),
     ("mujoco", "hull"): Call("mujoco", "mujoco.__version__", "import mujoco", _MUJOCO, unit_of),
+    ("drake", "hull"): Call(
+        "drake", _PACKAGE.format("drake"), f"{_VERSION}import pydrake.all as drake", _DRAKE, unit_of
+    ),
     ("parry3d", "hull"): _parry(_PARRY_HULL),
     ("parry3d", "mesh"): _parry(_PARRY_MESH),
     ("rapier3d", "hull"): Call("rapier3d", _PACKAGE.format("rapier3d"), f"{_VERSION}import rapier3d", _RAPIER, unit_of),

@@ -86,7 +86,6 @@ _PACKING = "import base64\nimport zlib\n"
 _UNPACK = """def unpacked(text, kind):
     return np.frombuffer(zlib.decompress(base64.b85decode(text)), kind).reshape(-1, 3).copy()
 
-
 """
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from harness.arrays import Floats, Ints
+from harness.arrays import Floats
 from harness.backends.protocol import ImpactTimes
 from harness.broadphase.pairs import BroadPhase
 from harness.methods.narrow_phase import hull_of_size_1
@@ -23,6 +23,7 @@ from harness.narrowphase.impact_pairs import (
     sphere_pair_onsets,
 )
 from harness.narrowphase.mesh_advancement import mesh_shape
+from harness.narrowphase.pair_states import PAIR_STATE
 from harness.narrowphase.support import support_map
 from harness.scene.scene import Scene
 
@@ -91,7 +92,8 @@ class KernelImpacts:
 
     def begin(self, duration: float) -> None:
         self._duration, self._tests, self._given_up = duration, 0, 0
-        self._touching: Ints = np.empty(0, np.int64)
+        self._before = np.empty(0, PAIR_STATE)
+        self._velocities = self._spins = np.full_like(self._scene.bodies.spins, np.nan)
         sizes = self._scene.bodies.sizes
         # a folded path is never farther from its middle than its speed allows
         way = 0.5 * duration * self._speeds
@@ -112,15 +114,16 @@ class KernelImpacts:
             self._reach,
             self._duration,
         )
-        asked = PairsAsked(close, self._touching, motion.first, self._tolerance)
-        found = Onsets(self._found.pairs, self._found.times, np.empty(len(close), np.bool_))
+        steady = ((motion.velocities == self._velocities) & (motion.spins == self._spins)).all(axis=1)
+        self._velocities, self._spins = motion.velocities.copy(), motion.spins.copy()
+        asked = PairsAsked(close, self._before, steady, motion.first, self._tolerance)
+        found = Onsets(self._found.pairs, self._found.times, np.empty(len(close), PAIR_STATE))
         count = self._search(asked, flights, found)
         if count.onsets > len(found.pairs):  # count first, then make room: rare, as the room is kept
             found = self._found = onsets_of(len(close), 2 * count.onsets)
             count = self._search(asked, flights, found)
         self._given_up += count.given_up
-        still = close[found.touching]
-        self._touching = still[:, 0] << 32 | still[:, 1]
+        self._before = found.states
         return ImpactTimes(close[found.pairs[: count.onsets]], found.times[: count.onsets].copy())
 
     def checked(self, found: ImpactTimes) -> ImpactTimes:

@@ -20,8 +20,8 @@ from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hu
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.overlap_duration import overlap_lasts
 from harness.narrowphase.support import SupportMap
-from harness.narrowphase.surface_distance import surface_distance
 from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
+from harness.narrowphase.triangles_within import gap_of_leaves, triangles_within
 from harness.narrowphase.vectors import scaled
 from harness.narrowphase.verdicts import PairVerdict, SearchVerdict
 
@@ -30,16 +30,21 @@ Memory = TypeVar("Memory")
 
 # Steps after which following a contact is given up. Ordinary ones take 50 to 200.
 MOST_STEPS = 20_000
+# Of these, in a row, such as only the gap allows; an ordinary contact has 20, faces that slide over each other no end.
+MOST_CREEPING = 2_000
 # Of the tolerance: the gap at which a contact ends, a little more than the one at which the next begins, and how far
 # bodies may move in a step though nothing proves that they touch.
 ENDING_GAP, RESOLUTION = 1.125, 0.125
 # How many levels above the triangles that crossed the next crossing is sought first, and for how many steps there and
 # from the roots.
-LEVELS_UP = 4
-NEARBY_STEPS = 200
+LEVELS_UP = 2
+NEARBY_STEPS = 100
 STEPS = 100_000
-# Of the time for which the last crossing lasted: the next one is to last as long, if one can be found.
-LESS = 0.5
+# Of the time for which the last crossing lasted: the next one is to last as long, if one can be found. With .5, or with
+# a search from higher up, following a contact takes longer.
+LESS = 0.3
+# Where the bodies are held by their gap alone, after how many instants the whole surfaces are searched for a crossing.
+SEARCH_EVERY = 8
 
 
 class ContactEnd(NamedTuple):
@@ -50,11 +55,13 @@ class ContactEnd(NamedTuple):
     verdict : SearchVerdict of its end
     time : s, up to which it has been followed: its end, that of the window, or where it was given up
     steps : instants that were looked at
+    holds : s, until when it certainly lasts; that may be beyond the end of the window
     """
 
     verdict: SearchVerdict
     time: float
     steps: int
+    holds: float
 
 
 class Hold(NamedTuple):
@@ -77,11 +84,13 @@ class LastCrossing(NamedTuple):
     ----------
     leaves : of either tree, whose triangles crossed or were nearest; the roots at first
     enough : s, for which the next crossing is to last
+    instants : how many in a row have shown no crossing that lasts
     stack : (DEPTH, 2) int array, written
     """
 
     leaves: NodePair
     enough: float
+    instants: int
     stack: Ints
 
 
@@ -104,7 +113,7 @@ def end_of_hull_contact(
         Until its time the gap was never wider than 5/4 of the tolerance; if the contact ends, it is wider than 9/8
         then.
     """
-    return end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)
+    return end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)[0]
 
 
 @kernel
@@ -116,8 +125,23 @@ def end_of_mesh_contact(
     Parameters and answer as for `end_of_hull_contact`, with `MeshShape` for hulls. A surface inside the other does not
     touch it.
     """
-    memory = LastCrossing(ROOTS, 0.0, np.empty((DEPTH, 2), np.int64))
-    return end_of_contact(shape_a, shape_b, a, b, begin, end, tolerance, hold_of_surfaces, memory)
+    last = LastCrossing(ROOTS, 0.0, 0, np.empty((DEPTH, 2), np.int64))
+    return followed_mesh_contact(shape_a, shape_b, a, b, begin, end, tolerance, last)[0]
+
+
+@kernel
+def followed_mesh_contact(
+    shape_a: MeshShape,
+    shape_b: MeshShape,
+    a: Motion,
+    b: Motion,
+    begin: float,
+    end: float,
+    tolerance: float,
+    last: LastCrossing,
+) -> tuple[ContactEnd, LastCrossing]:
+    """As `end_of_mesh_contact`, from what was remembered of the contact, with what to remember of it."""
+    return end_of_contact(shape_a, shape_b, a, b, begin, end, tolerance, hold_of_surfaces, last)
 
 
 @inner
@@ -131,22 +155,23 @@ def end_of_contact(
     tolerance: float,
     hold_of: Callable[[Shape, Shape, RelativeMotion, float, Memory], tuple[Hold, Memory]],
     memory: Memory,
-) -> ContactEnd:
+) -> tuple[ContactEnd, Memory]:
     """The end of a contact of hulls or surfaces, given what shows how firmly they touch."""
     near = ENDING_GAP * max(tolerance, LEAST_GAP * (a.size + b.size))
     a, b = seen_at(a, b, begin)
-    speed, rest, now = fastest_passing(a, b), end - begin, 0.0
+    speed, rest, now, creeping = fastest_passing(a, b), end - begin, 0.0, 0
     for step in range(1, MOST_STEPS + 1):
         hold, memory = hold_of(shape_a, shape_b, relative_motion(a, b, now), near, memory)
         if hold.room < 0.0:
-            return ContactEnd(SearchVerdict.FOUND, begin + now, step)
+            return ContactEnd(SearchVerdict.FOUND, begin + now, step, begin + now), memory
         wait = max(hold.lasts, max(hold.room, RESOLUTION / ENDING_GAP * near) / speed)
         if now + wait >= rest:
-            return ContactEnd(SearchVerdict.NEVER, end, step)
-        if not now + wait > now:
-            return ContactEnd(SearchVerdict.STALLED, begin + now, step)
+            return ContactEnd(SearchVerdict.NEVER, end, step, max(end, begin + (now + hold.lasts))), memory
+        creeping = 0 if hold.lasts > 0.0 else creeping + 1
+        if not now + wait > now or creeping == MOST_CREEPING:
+            return ContactEnd(SearchVerdict.STALLED, begin + now, step, begin + now), memory
         now += wait
-    return ContactEnd(SearchVerdict.STALLED, begin + now, MOST_STEPS)
+    return ContactEnd(SearchVerdict.STALLED, begin + now, MOST_STEPS, begin + now), memory
 
 
 @inner
@@ -168,19 +193,23 @@ def hold_of_surfaces(
     shape_a: MeshShape, shape_b: MeshShape, seen: RelativeMotion, near: float, last: LastCrossing
 ) -> tuple[Hold, LastCrossing]:
     """How firmly two surfaces touch, whose contact ends at a gap of `near`; and where to start next time."""
-    trees, stack = Trees(shape_a.tree, shape_b.tree), last.stack
+    trees, pose, stack = Trees(shape_a.tree, shape_b.tree), seen.pose, last.stack
+    margin = MARGIN * (pose.size_a + pose.size_b)
     start = last.leaves
     for _ in range(LEVELS_UP):
         start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
     found = longest_crossing(trees, seen, start, last.enough, NEARBY_STEPS, stack)
-    if found.lasts < last.enough:
+    gap, leaves = 0.0, found.leaves
+    if leaves.a < 0:
+        gap, leaves = gap_of_leaves(trees, pose, last.leaves, margin), last.leaves
+    # a crossing anywhere else may last longer; while the gap alone holds them, there mostly is none
+    held = gap <= near and not found.lasts > 0.0
+    if (held and last.instants % SEARCH_EVERY == 0) or gap > near or 0.0 < found.lasts < last.enough:
         other = longest_crossing(trees, seen, ROOTS, last.enough, STEPS, stack)
-        if other.lasts > found.lasts or found.leaves.a < 0:
-            found = other
-    enough = LESS * found.lasts
-    if found.leaves.a >= 0:
-        return Hold(found.lasts, near), LastCrossing(found.leaves, enough, stack)
-    margin = MARGIN * (seen.pose.size_a + seen.pose.size_b)
-    apart = surface_distance(trees, seen.pose, near, margin, stack)
-    room = near - apart.gap if apart.gap < np.inf else -1.0
-    return Hold(found.lasts, room), LastCrossing(apart.leaves, enough, stack)
+        if other.lasts > found.lasts or (gap > 0.0 and other.leaves.a >= 0):
+            found, gap, leaves = other, 0.0, other.leaves
+    if gap > near:
+        gap, leaves = triangles_within(trees, pose, near, margin, stack)
+    if found.lasts > 0.0:
+        return Hold(found.lasts, near), LastCrossing(leaves, LESS * found.lasts, 0, stack)
+    return Hold(0.0, near - gap), LastCrossing(leaves, 0.0, last.instants + 1, stack)

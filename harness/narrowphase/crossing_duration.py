@@ -109,7 +109,7 @@ def longest_crossing(
                 trials += 1
                 if time > longest or leaves.a < 0:
                     longest, leaves = time, nodes
-                if longest >= enough or trials == TRIALS:
+                if 0.0 < longest >= enough or trials == TRIALS:
                     break
         else:
             height = push_near_halves(trees, pose, nodes, margin, stack, height)

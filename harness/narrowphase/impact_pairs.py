@@ -1,7 +1,8 @@
 """When the pairs of a frame begin to touch: every onset from one frame to the next, of spheres, hulls or surfaces.
 
 A pair that touches at the start of a frame is followed until it parts, and one that does not is advanced to its next
-contact, by the same searches that event-driven motion uses. So times are exact however long the frame is.
+contact, by the same searches that event-driven motion uses. So times are exact however long the frame is. A search for
+a contact goes on to where either way turns: a pair which goes on as it did is searched once, and not in every frame.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.kernel import inner, kernel
-from harness.narrowphase.contact_end import ContactEnd, end_of_hull_contact, end_of_mesh_contact
+from harness.narrowphase.contact_end import ContactEnd, LastCrossing, end_of_hull_contact, followed_mesh_contact
 from harness.narrowphase.contact_intervals import Onset, next_mesh_contact
 from harness.narrowphase.frame_flights import (
     FrameFlights,
@@ -26,8 +27,19 @@ from harness.narrowphase.frame_flights import (
 from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.motion_impacts import near_impact
+from harness.narrowphase.pair_states import (
+    NOTHING_KNOWN,
+    PAIR_STATE,
+    PairState,
+    PairStates,
+    at_turn,
+    keep,
+    later,
+    state_of,
+)
 from harness.narrowphase.spheres import passage
 from harness.narrowphase.support import SupportMap
+from harness.narrowphase.tree_pairs import DEPTH, ROOTS
 from harness.narrowphase.vectors import dot, minus
 from harness.narrowphase.verdicts import SearchVerdict
 
@@ -43,13 +55,15 @@ class PairsAsked(NamedTuple):
     Attributes
     ----------
     pairs : (k, 2) int array, sorted: all that can touch
-    touching : (m,) int array, i << 32 | j, ascending: the pairs that touched at the end of the last frame
+    before : (m,) PairStates at the end of the last frame
+    steady : (n,) bool array, the bodies that go on as in the last frame
     first : whether it is the first frame: a pair that touches at its start has not begun to in it
     tolerance : of the mean size of a pair, the gap at which bodies count as touching; of no effect on spheres
     """
 
     pairs: Pairs
-    touching: Ints
+    before: PairStates
+    steady: Flags
     first: bool
     tolerance: float
 
@@ -61,12 +75,12 @@ class Onsets(NamedTuple):
     ----------
     pairs : (m,) int array, which of the pairs asked about began to touch; ascending
     times : (m,) float array, s after the start of the frame
-    touching : (k,) bool array, whether a pair touches at the end of the frame
+    states : (k,) PairStates at the end of the frame
     """
 
     pairs: Ints
     times: Floats
-    touching: Flags
+    states: PairStates
 
 
 class Count(NamedTuple):
@@ -77,21 +91,34 @@ class Count(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A straight piece of a pair's way: when it begins in the frame and how long it is, s; the gap that is touching, m.
+    """A straight piece of a pair's way.
 
-    `settled` says that a pair which touches at its start has begun to before.
+    Attributes
+    ----------
+    begin, length : s, when it begins in the frame, and how much of it lies in the frame
+    straight : s, how long the way is straight, which may be longer
+    tolerance : m, the gap that counts as touching
+    settled : whether a pair which touches at its start has begun to before
     """
 
     begin: float
     length: float
+    straight: float
     tolerance: float
     settled: bool
 
 
 class Followed(NamedTuple):
-    """How a piece ended: whether the pair touches then, how many onsets there are so far, and whether it is known."""
+    """What is known of a pair, from the beginning of a piece on, when it has been followed through it.
 
-    touches: bool
+    Attributes
+    ----------
+    state : PairState; it lasts to the end of the piece, or longer
+    onsets : how many there are so far, of all pairs
+    known : whether every search came to its end
+    """
+
+    state: PairState
     onsets: int
     known: bool
 
@@ -128,25 +155,31 @@ def pair_onsets(
     for k in range(len(asked.pairs)):
         i, j = asked.pairs[k, 0], asked.pairs[k, 1]
         key = i << 32 | j
-        while place < len(asked.touching) and asked.touching[place] < key:
+        while place < len(asked.before) and asked.before[place].key < key:
             place += 1
-        touches = place < len(asked.touching) and asked.touching[place] == key
+        state = state_of(asked.before, place, key)
+        if not (asked.steady[i] and asked.steady[j]):
+            state = at_turn(state)
+        if state.until > flights.duration:
+            keep(found.states, k, key, later(state, flights.duration))
+            continue
         flight_of_pair(flights, i, j, pair)
         now = 0.0
-        followed = Followed(touches, count, True)
         while True:
-            wait = min(until_fold(flights, i, j, pair), flights.duration - now)
+            straight = until_fold(flights, i, j, pair)
+            wait = min(straight, flights.duration - now)
             a, b = motion_in(flights, i, pair, 0, now), motion_in(flights, j, pair, 1, now)
             tolerance = asked.tolerance * 0.5 * (a.size + b.size)
-            piece = Piece(now, wait, tolerance, asked.first and now == 0.0)
-            followed = again_if_unknown(shape, a, b, piece, followed, k, found, in_piece)
+            piece = Piece(now, wait, straight, tolerance, asked.first and now == 0.0)
+            followed = again_if_unknown(shape, a, b, piece, Followed(state, count, True), k, found, in_piece)
+            state, count = followed.state, followed.onsets
             given_up += not followed.known
             if now + wait >= flights.duration:
                 break
             fold(flights, i, j, pair, wait)
             now += wait
-        count = followed.onsets
-        found.touching[k] = followed.touches
+            state = at_turn(state)
+        keep(found.states, k, key, later(state, wait))
     return Count(count, given_up)
 
 
@@ -166,12 +199,12 @@ def again_if_unknown(
     One whose end is not known even then is taken to touch through the piece: coplanar faces that slide over each other
     neither cross nor come apart.
     """
-    after = Followed(before.touches, before.onsets, True)
+    after = before
     for _ in range(MOST_SEARCHES):
         after = in_piece(shape, a, b, piece, before, k, found)
         if after.known:
             break
-        piece = Piece(piece.begin, piece.length, COARSER * piece.tolerance, piece.settled)
+        piece = Piece(piece.begin, piece.length, piece.straight, COARSER * piece.tolerance, piece.settled)
     return after
 
 
@@ -183,13 +216,13 @@ def spheres_in_piece(
     gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
     met = passage(gap, drift, 0.5 * (a.size + b.size))
     if not (met.enter <= piece.length and met.leave >= 0.0):
-        return Followed(False, before.onsets, True)
+        return Followed(NOTHING_KNOWN, before.onsets, True)
     count = before.onsets
     # what touches at the start has been noted, unless rounding has put its beginning off until now: then it approaches
     begins = met.enter > 0.0 or (not piece.settled and dot(gap, drift) < 0.0)
-    if begins and not before.touches:
+    if begins and not before.state.touches:
         count = noted(found, count, k, piece.begin + max(met.enter, 0.0))
-    return Followed(met.leave >= piece.length, count, True)
+    return Followed(PairState(met.leave >= piece.length, 0.0, False, ROOTS, 0.0, 0), count, True)
 
 
 @kernel
@@ -197,7 +230,7 @@ def hulls_in_piece(
     hull: SupportMap, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
 ) -> Followed:
     """Hulls, from contact to contact."""
-    return solids_in_piece(hull, a, b, piece, before, k, found, next_hull_contact, end_of_hull_contact)
+    return solids_in_piece(hull, a, b, piece, before, k, found, next_hull_contact, followed_hulls)
 
 
 @kernel
@@ -205,7 +238,7 @@ def surfaces_in_piece(
     shape: MeshShape, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
 ) -> Followed:
     """Surfaces, from contact to contact."""
-    return solids_in_piece(shape, a, b, piece, before, k, found, next_mesh_contact, end_of_mesh_contact)
+    return solids_in_piece(shape, a, b, piece, before, k, found, next_mesh_contact, followed_surfaces)
 
 
 @kernel
@@ -218,6 +251,24 @@ def next_hull_contact(
 
 
 @inner
+def followed_hulls(
+    hull: SupportMap, a: Motion, b: Motion, state: PairState, end: float, tolerance: float
+) -> tuple[ContactEnd, PairState]:
+    """Hulls that touch, followed on from until when that is known."""
+    return end_of_hull_contact(hull, hull, a, b, state.until, end, tolerance), state
+
+
+@inner
+def followed_surfaces(
+    shape: MeshShape, a: Motion, b: Motion, state: PairState, end: float, tolerance: float
+) -> tuple[ContactEnd, PairState]:
+    """Surfaces that touch, followed on from until when that is known, and where they crossed then."""
+    last = LastCrossing(state.leaves, state.enough, state.instants, np.empty((DEPTH, 2), np.int64))
+    ending, last = followed_mesh_contact(shape, shape, a, b, state.until, end, tolerance, last)
+    return ending, PairState(True, state.until, False, last.leaves, last.enough, last.instants)
+
+
+@inner
 def solids_in_piece(
     shape: Shape,
     a: Motion,
@@ -227,27 +278,34 @@ def solids_in_piece(
     k: int,
     found: Onsets,
     next_contact: Callable[[Shape, Shape, Motion, Motion, float, float, float], Onset],
-    end_of_contact: Callable[[Shape, Shape, Motion, Motion, float, float, float], ContactEnd],
+    end_of_contact: Callable[[Shape, Motion, Motion, PairState, float, float], tuple[ContactEnd, PairState]],
 ) -> Followed:
     """From contact to contact, given what finds the next one and what follows it to its end."""
-    now, touches, count, known = 0.0, before.touches, before.onsets, True
-    while known:
-        if touches:
-            ending = end_of_contact(shape, shape, a, b, now, piece.length, piece.tolerance)
-            known = ending.verdict != SearchVerdict.STALLED
-            if ending.verdict != SearchVerdict.FOUND:
-                break
-            now, touches = ending.time, False
-        onset = next_contact(shape, shape, a, b, now, piece.length, piece.tolerance)
-        known = onset.verdict != SearchVerdict.STALLED
-        if onset.verdict != SearchVerdict.FOUND:
-            break
-        if count > before.onsets or before.touches:
-            known = onset.time > now  # what touches again at once has not been seen to part
-        if known and not (piece.settled and onset.time == 0.0):
-            count = noted(found, count, k, piece.begin + onset.time)
-        now, touches = onset.time, True
-    return Followed(touches, count, known)
+    state, count, parted = before.state, before.onsets, -1.0
+    while state.until < piece.length or (state.onset and state.until <= piece.length):
+        if state.touches:
+            ending, state = end_of_contact(shape, a, b, state, piece.length, piece.tolerance)
+            goes_on = ending.verdict != SearchVerdict.FOUND
+            holds = min(ending.holds, max(piece.length, piece.straight))
+            state = PairState(goes_on, holds, False, state.leaves, state.enough, state.instants)
+            if ending.verdict == SearchVerdict.STALLED:
+                return Followed(state, count, False)
+            parted = holds
+            continue
+        if not state.onset:
+            onset = next_contact(shape, shape, a, b, state.until, piece.straight, piece.tolerance)
+            begins = onset.verdict == SearchVerdict.FOUND
+            if onset.verdict == SearchVerdict.STALLED and onset.time < piece.length:
+                return Followed(state, count, False)
+            until = piece.straight if onset.verdict == SearchVerdict.NEVER else onset.time
+            state = PairState(False, until, begins, ROOTS, 0.0, 0)
+            continue
+        if state.until == parted:  # what touches again at once has not been seen to part
+            return Followed(PairState(True, state.until, False, ROOTS, 0.0, 0), count, False)
+        if not (piece.settled and state.until == 0.0):
+            count = noted(found, count, k, piece.begin + state.until)
+        state = PairState(True, state.until, False, ROOTS, 0.0, 0)
+    return Followed(state, count, True)
 
 
 @inner
@@ -260,4 +318,4 @@ def noted(found: Onsets, count: int, k: int, time: float) -> int:
 
 def onsets_of(pairs: int, room: int) -> Onsets:
     """Unwritten, for so many pairs and onsets."""
-    return Onsets(np.empty(room, np.int64), np.empty(room), np.empty(pairs, np.bool_))
+    return Onsets(np.empty(room, np.int64), np.empty(room), np.empty(pairs, PAIR_STATE))

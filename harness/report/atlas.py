@@ -71,6 +71,18 @@ class AtlasResults:
         ]
 
     @cached_property
+    def overall(self) -> list[AtlasPart]:
+        """Of each query that was asked of several kinds of bodies, a matrix of all of them together."""
+        found = []
+        for query in dict.fromkeys(part.query for part in self.parts):
+            parts = [part for part in self.parts if part.query == query]
+            if len(parts) > 1:
+                families = dict.fromkeys(family for part in parts for family in part.families)
+                engines = sorted({engine for part in parts for engine in part.engines})
+                found.append(AtlasPart("", f"{query}, all bodies", query, engines, list(families), _together(parts)))
+        return found
+
+    @cached_property
     def files(self) -> dict[str, str]:
         """The smallest cases: experiments, and Python files that need the library alone."""
         found = {}
@@ -87,6 +99,20 @@ class AtlasResults:
 def case_stem(record: ComparisonRecord, place: int) -> str:
     """Where the files of a case lie, without suffix."""
     return f"cases/{record.experiment}-{record.backends[0]}-{place}".replace("/", "-").replace("cases-", "cases/", 1)
+
+
+def _together(parts: Sequence[AtlasPart]) -> dict[tuple[str, str], Mapping[str, Any]]:
+    """Verdicts of all parts, counted together by engine and family."""
+    cells: dict[tuple[str, str], dict[str, Any]] = {}
+    for part in parts:
+        for place, cell in part.cells.items():
+            counted = cells.setdefault(place, {"verdicts": 0, "wrong": 0, "beyond": 0})
+            for name in counted:
+                counted[name] += cell[name]
+    return {
+        place: cell | {"per_million": 1e6 * cell["wrong"] / cell["verdicts"] if cell["verdicts"] else None}
+        for place, cell in cells.items()
+    }
 
 
 def _shown(record: ComparisonRecord, cell: Mapping[str, Any]) -> dict[str, Any]:

@@ -103,9 +103,9 @@ def wrong_about(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["fcl", "pybullet", "mujoco", "trimesh", "coal", "rapier3d", "parry3d"])
+@pytest.mark.parametrize("name", ["fcl", "pybullet", "mujoco", "trimesh", "coal", "rapier3d", "parry3d", "drake"])
 def test_a_reproduction_asks_the_library_and_checks_its_proof_and_one_that_shows_nothing_is_not_written(name, tmp_path):
-    pytest.importorskip({"parry3d": "py_parry3d"}.get(name, name))
+    pytest.importorskip({"parry3d": "py_parry3d", "drake": "pydrake"}.get(name, name))
     from harness.compare.library_calls import CALLS
     from harness.compare.script import _written
 

@@ -1,9 +1,11 @@
 """The atlas of gaps: exact distances decide, an engine that is off is found, and one that is right is not accused."""
 
+import json
 from fractions import Fraction
 
 import pytest
 
+from harness.cli.surveying import cell_row
 from harness.compare.atlas import survey
 from harness.compare.budget import Budget
 from harness.compare.exact_gap import ExactGap
@@ -18,6 +20,7 @@ FAMILIES = ["random", "grazing", "shared"]
 
 def found(query, shape, engines, families=FAMILIES, count=8):
     made = survey(shape, cube_mesh(), families, count, engines, Budget(), made=SURVEYS[query])
+    json.dumps([cell_row(cell) for cell in made.cells], allow_nan=False)  # as `--json` and the database have them
     return {(cell.engine, cell.family): (cell.verdicts, cell.beyond) for cell in made.cells}
 
 

@@ -124,3 +124,23 @@ def test_the_end_of_a_contact_is_where_the_gap_is_the_tolerance():
         gap = 2 * ended.time - 5 - WIDTH
         assert ended.verdict == SearchVerdict.FOUND
         assert 1.12 * tolerance <= gap <= 1.26 * tolerance
+
+
+def test_a_contact_is_followed_where_the_first_crossing_that_is_found_is_over_at_once():
+    # of many launched at random the pair whose first two triangles cross by less than is proved to last
+    shape = shape_named("pumpkin-1753.ply")
+    a = body(
+        (9.698130943319692, -5.789900946238779, -8.343332438782694),
+        (1.0550675538828989, 0.11609573366660553, -0.23893639765575184),
+        (-0.3747730647102604, -0.45118834591720597, 0.8032780365509786, -0.1035307803070142),
+        (2.443816840928261, 0.40214042503331543, -0.26864649518044803),
+    )
+    b = body(
+        (9.004683244761754, -5.425233482210154, -8.791806656972888),
+        (0.49115328385810814, -0.8339614502343027, -0.6197970116289894),
+        (0.5038719178685125, 0.6686266967345621, -0.22640062454904542, -0.4977893008102293),
+        (-0.7606784241603627, 0.45776586173193884, -0.07211122459247195),
+    )
+    ended = end_of_mesh_contact(shape, shape, a, b, 0.0, 0.5, 1e-10)
+    assert ended.verdict != SearchVerdict.STALLED
+    assert ended.steps < 500

@@ -26,12 +26,13 @@ def _content(results: Results) -> Content | None:
     values = {
         "summary": _summary(atlas),
         "parts": parts,
+        "overall": figures["overall"],
         "families": [(family, FAMILIES[family]) for family in FAMILIES if family in seen],
         "notes": list(dict.fromkeys(line for r in atlas.records for line in r.document["unsupported"])),
         "left_out": list(dict.fromkeys(line for r in atlas.records for line in r.document["left_out"])),
         "commands": list(dict.fromkeys(record.command for record in atlas.records)),
     }
-    return Content("atlas.html.j2", values, results.records, figures["matrix"], atlas.files)
+    return Content("atlas.html.j2", values, results.records, [*figures["overall"], *figures["matrix"]], atlas.files)
 
 
 def _summary(atlas: AtlasResults) -> list[str]:

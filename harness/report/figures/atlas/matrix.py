@@ -15,11 +15,11 @@ WITHIN, BEYOND = 0, 2
 
 
 def _figures(atlas: AtlasResults) -> Iterator[Figure]:
-    return (_figure(part) for part in atlas.parts)
+    return (matrix_figure(part) for part in atlas.parts)
 
 
-def _figure(part: AtlasPart) -> Figure:
-    name = re.sub(r"[^\w-]+", "-", f"atlas-{part.experiment}-{part.title}")
+def matrix_figure(part: AtlasPart) -> Figure:
+    name = re.sub(r"[^\w-]+", "-", "-".join(filter(None, ("atlas", part.experiment, part.title))))
     beyond = [
         f"{engine} in {number(cell['beyond'])} of {number(cell['verdicts'])} ({family})"
         for (engine, family), cell in sorted(part.cells.items())

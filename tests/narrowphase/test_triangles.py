@@ -1,4 +1,4 @@
-"""Distances of triangles, degenerate ones too, by their edges and faces one by one; distances of surfaces by FCL."""
+"""Distances of triangles, degenerate ones too, by their edges and faces; surfaces within a distance, by FCL."""
 
 import numpy as np
 import pytest
@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from harness.narrowphase.free_flight import orientation, place
 from harness.narrowphase.gjk import relative_pose
-from harness.narrowphase.surface_distance import surface_distance
-from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, Trees
+from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, ROOTS, Trees
 from harness.narrowphase.triangle_distance import triangle_distance
+from harness.narrowphase.triangles_within import gap_of_leaves, triangles_within
 from harness.narrowphase.vectors import minus
 from tests.narrowphase.flights import Truth, encounter, shape_named
 from tests.narrowphase.meshes import MESHES, mesh_named
@@ -95,20 +95,23 @@ def test_the_distance_of_triangles_is_the_least_over_their_features(seed, form):
 @pytest.mark.slow
 @settings(max_examples=40)
 @given(st.integers(0, 10**6), st.sampled_from(["cube", *MESHES[:3]]))
-def test_the_distance_of_surfaces_is_that_of_fcl_up_to_the_limit(seed, name):
+def test_two_triangles_are_found_within_a_limit_exactly_where_fcl_finds_the_surfaces_so_near(seed, name):
     a, b = encounter(seed, 0.0, apart=(0.8, 1.5))
     tree = shape_named(name).tree
     offset = minus(place(b, 0.0), place(a, 0.0))
     pose = relative_pose(orientation(a, 0.0), a.size, orientation(b, 0.0), b.size, offset)
-    stack = np.empty((DEPTH, 2), np.int64)
+    trees, stack = Trees(tree, tree), np.empty((DEPTH, 2), np.int64)
     if name == "cube":
         expected = min(by_features(p, q) for p in placed(tree, a) for q in placed(tree, b))
     else:
         truth = Truth(mesh_named(name), a, b)
         expected = 0.0 if truth.touch(0.0) else truth.distance(0.0)
-    assert surface_distance(Trees(tree, tree), pose, 10.0, 1e-13, stack).gap == pytest.approx(expected, abs=1e-9)
+    found = triangles_within(trees, pose, 1.01 * expected + 1e-9, 1e-13, stack)
+    assert expected - 1e-9 <= found.gap <= 1.01 * expected + 1e-9
+    assert gap_of_leaves(trees, pose, found.leaves, 1e-13) == found.gap
+    assert gap_of_leaves(trees, pose, ROOTS, 1e-13) == np.inf
     if expected > 0:
-        assert surface_distance(Trees(tree, tree), pose, 0.99 * expected, 1e-13, stack) == (np.inf, NO_NODES)
+        assert triangles_within(trees, pose, 0.99 * expected, 1e-13, stack) == (np.inf, NO_NODES)
 
 
 def placed(tree, motion):

