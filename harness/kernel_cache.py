@@ -1,21 +1,26 @@
 """Where compiled kernels are kept, and that nothing about a file can keep a kernel from being compiled.
 
 A folder may be missing, read-only or on a full disk, and a power cut may leave a file cut short: then a kernel is
-compiled anew.
+compiled anew. Of processes that need a kernel at one moment, one compiles it, and the others wait for its file.
 """
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
 import re
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from time import monotonic, sleep
 from typing import Any
 
 PACKAGE = Path(__file__).resolve().parent
+# s that a process waits for another to compile a kernel, which may have been stopped over it.
+LONGEST_WAIT = 120.0
 
 
 def user_cache() -> Path | None:
@@ -60,8 +65,10 @@ def forgiving(dispatcher: Any) -> Any:
     """
     kept = dispatcher._cache
     load, save = kept.load_overload, kept.save_overload
+    function = dispatcher.py_func
+    compiling = _Turn(kept.cache_path, f"{function.__module__}.{function.__qualname__}")
 
-    def load_overload(signature: Any, context: Any) -> Any:
+    def on_disk(signature: Any, context: Any) -> Any:
         try:
             return load(signature, context)
         except Exception:
@@ -69,12 +76,63 @@ def forgiving(dispatcher: Any) -> Any:
                 kept.flush()
             return None
 
+    def load_overload(signature: Any, context: Any) -> Any:
+        found = on_disk(signature, context)
+        if found is None:
+            compiling.wait()
+            found = on_disk(signature, context)  # which another may have made meanwhile
+            if found is not None:
+                compiling.end()
+        return found
+
     def save_overload(signature: Any, compiled: Any) -> None:
-        with suppress(OSError):
-            save(signature, compiled)
+        try:
+            with suppress(OSError):
+                save(signature, compiled)
+        finally:
+            compiling.end()
 
     kept.load_overload, kept.save_overload = load_overload, save_overload
     return dispatcher
+
+
+class _Turn:
+    """The turn of one process to compile a kernel: a byte of a file, locked. It ends with the process at the latest.
+
+    Such a lock is the process's own, so that a kernel that calls itself does not wait for itself.
+
+    Parameters
+    ----------
+    folder : of the kernel's file
+    name : of the kernel
+    """
+
+    def __init__(self, folder: str, name: str) -> None:
+        self._file, self._byte = os.path.join(folder, "compiling"), zlib.crc32(name.encode())
+
+    def wait(self) -> None:
+        """Wait for the turn, but not for ever; where nothing can be locked, it has come."""
+        deadline = monotonic() + LONGEST_WAIT
+        with suppress(OSError):
+            os.makedirs(os.path.dirname(self._file), exist_ok=True)
+            file = _opened(self._file)
+            while monotonic() < deadline:
+                try:
+                    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, self._byte)
+                    return
+                except (BlockingIOError, PermissionError):  # another has it
+                    sleep(0.02)
+
+    def end(self) -> None:
+        """Let others have it."""
+        with suppress(OSError):
+            fcntl.lockf(_opened(self._file), fcntl.LOCK_UN, 1, self._byte)
+
+
+@cache
+def _opened(file: str) -> int:
+    """The file of the locks, opened once: a process loses all locks of a file when it closes it anywhere."""
+    return os.open(file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
 
 
 # "from a.b import c, d", its names in brackets over several lines or not

@@ -7,7 +7,7 @@ import sys
 import numba
 import pytest
 
-from harness.kernel_cache import PACKAGE, all_sources, forgiving, user_cache
+from harness.kernel_cache import PACKAGE, _Turn, all_sources, forgiving, user_cache
 
 KERNEL = """
 import sys
@@ -70,6 +70,33 @@ def test_a_full_disk_costs_the_file_of_a_kernel_and_not_the_kernel():
     function = numba.njit(cache=True)(lambda x: x + 1)
     function._cache._cache_file.save = function._cache._cache_file.load = fail
     assert forgiving(function)(1) == 2
+
+
+@pytest.mark.slow
+def test_of_processes_that_need_a_kernel_at_once_one_compiles_it(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(KERNEL)
+    command = [sys.executable, program, tmp_path / "kept"]
+    started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(3)]
+    answers = [process.communicate(timeout=120)[0].split() for process in started]
+    assert sorted(answers) == [["42", "0"], ["42", "1"], ["42", "1"]]
+
+
+def test_a_process_that_is_stopped_over_a_kernel_keeps_no_other_for_ever(tmp_path, monkeypatch):
+    monkeypatch.setattr("harness.kernel_cache.LONGEST_WAIT", 0.1)
+    hold = (
+        "import sys; from harness.kernel_cache import _Turn; _Turn(sys.argv[1], 'f').wait(); print(flush=True); input()"
+    )
+    holder = subprocess.Popen(
+        [sys.executable, "-c", hold, tmp_path], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    holder.stdout.readline()
+    turn = _Turn(str(tmp_path), "f")
+    turn.wait()
+    turn.wait()  # nor is it kept by itself
+    turn.end()
+    holder.communicate("\n")
+    _Turn(str(tmp_path / "file" / "none"), "f").end()
 
 
 def test_a_user_without_a_home_has_no_cache(monkeypatch):

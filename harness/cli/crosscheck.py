@@ -170,32 +170,17 @@ def key_of(
 
 def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:
     """A method that computes events, on every motion of the experiment."""
-    whole, seen = Comparison(), set()
-    for point in experiment.points:
-        moved = repr((point.scene, point.motion.duration, point.motion.dt, point.engine.tolerance))
-        if moved in seen:
-            continue
-        seen.add(moved)
-        scene = _scene(experiment, point, meshes)
-        frames = None if scene is None else extent.frames(point, len(scene.bodies))
-        if scene is not None and frames is not None:
-            dt, tolerance = point.motion.dt, point.engine.tolerance
-            whole.add(audit_events(scene, name, max(1, frames // budget.every), dt, tolerance, budget))
+    whole = Comparison()
+    for point, scene, frames in _motions(experiment, meshes, extent, by_tolerance=True):
+        dt, tolerance = point.motion.dt, point.engine.tolerance
+        whole.add(audit_events(scene, name, max(1, frames // budget.every), dt, tolerance, budget))
     return whole
 
 
 def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterator[PoseSet]:
     """What the experiment's points fly through, each scene once; then the hard poses of every shape of a mesh."""
-    seen = set()
-    for point in experiment.points:
-        moved = repr((point.scene, point.motion.duration, point.motion.dt))
-        if moved in seen:
-            continue
-        seen.add(moved)
-        scene = _scene(experiment, point, meshes)
-        frames = None if scene is None else extent.frames(point, len(scene.bodies))
-        if scene is not None and frames is not None:
-            yield flown(scene, frames, point.motion.dt)
+    for point, scene, frames in _motions(experiment, meshes, extent):
+        yield flown(scene, frames, point.motion.dt)
     random = {
         (point.scene.shape, point.scene.mesh_names): point for point in experiment.points if point.scene.bodies is None
     }
@@ -210,6 +195,25 @@ def _both(meshes: tuple[Mesh, ...]) -> Iterator[tuple[Mesh, ...]]:
         yield ()
     yield from ((mesh,) for mesh in meshes)
     yield from pairwise(meshes)
+
+
+def _motions(
+    experiment: Experiment, meshes: Meshes, extent: Extent, *, by_tolerance: bool = False
+) -> Iterator[tuple[Point, Scene, int]]:
+    """Each motion of the experiment that has a pair and frames to look at: a point of it, its scene, and how many.
+
+    `by_tolerance` counts a motion again that is asked about with another tolerance.
+    """
+    seen = set()
+    for point in experiment.points:
+        moved = repr((point.scene, point.motion.duration, point.motion.dt, by_tolerance and point.engine.tolerance))
+        if moved in seen:
+            continue
+        seen.add(moved)
+        scene = _scene(experiment, point, meshes)
+        frames = None if scene is None else extent.frames(point, len(scene.bodies))
+        if scene is not None and frames is not None:
+            yield point, scene, frames
 
 
 def _scene(experiment: Experiment, point: Point, meshes: Meshes) -> Scene | None:

@@ -44,7 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     for experiment in found.experiments:
         points, runs = len(experiment.points), experiment.runs
         print(f"{experiment.name}: {points} point{'s' * (points != 1)}, {runs} run{'s' * (runs != 1)}")
-    for problem in [*lacking, *found.lacking]:
+    first = {(problem.file, problem.message): problem for problem in reversed([*lacking, *found.lacking])}
+    for problem in reversed(first.values()):
         print(f"{problem}; what needs it is passed over")
     problems += found.problems
     if problems:

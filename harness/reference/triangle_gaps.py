@@ -111,8 +111,7 @@ def _pierces(start: Floats, end: Floats, triangle: Floats) -> Flags:
 
 def _apart_along(points: Floats, one: Floats, other: Floats, upper: Floats) -> Floats:
     """How far triangles are apart along the line through two points; 0 if they are not."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        axis = (points[:, 1] - points[:, 0]) / upper[:, None]
+    axis = (points[:, 1] - points[:, 0]) / np.where(upper > 0.0, upper, 1.0)[:, None]
     low = np.einsum("kcd,kd->kc", other, axis).min(axis=1) - np.einsum("kcd,kd->kc", one, axis).max(axis=1)
     lower: Floats = np.where(upper > 0.0, np.clip(low, 0.0, upper), 0.0)
     return lower

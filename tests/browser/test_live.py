@@ -60,6 +60,7 @@ def test_what_cannot_be_run_is_said_in_a_sentence_and_the_scene_stays(visit, add
     page = visit(address).page
     page.wait_for_selector("#costs tbody tr")
     page.wait_for_function("() => !document.getElementById('settings').hasAttribute('aria-busy')")
+    page.wait_for_function("() => document.getElementById('now').textContent")
     before = page.text_content("#now")
     page.fill("[name=count]", "many")
     page.keyboard.press("Enter")

@@ -49,6 +49,7 @@ def test_a_package_is_looked_into_without_being_imported(places: Path) -> None:
 
 
 def test_a_shipped_package_of_meshes_works() -> None:
+    pytest.importorskip("pybullet_data", reason="pip install 'harness[pybullet]'")
     path = locate_mesh("package:pybullet_data/duck.obj", Path())
     assert path.name == "duck.obj"
     assert path.is_absolute()
@@ -77,6 +78,7 @@ def test_a_package_that_is_none_is_refused(places: Path) -> None:
 
 def test_near_misses_are_named(places: Path) -> None:
     assert refused("shard.ply").endswith('did you mean "shared.ply"?')
+    pytest.importorskip("pybullet_data", reason="pip install 'harness[pybullet]'")
     assert refused("package:pybullet_data/duk.obj").endswith('did you mean "package:pybullet_data/duck.obj"?')
 
 

@@ -44,6 +44,16 @@ def detected(name, scene):
     return detector.pairs(scene.bodies.positions, scene.bodies.quaternions).tolist()
 
 
+def judged(scene, found):
+    """A pair that touches and one that does not, of the fewest faces: exact arithmetic on large surfaces takes long."""
+    count = len(scene.mesh_of)
+    faces = np.array([len(mesh.faces) for mesh in scene.meshes])[scene.mesh_of]
+    unlike = [(i, j) for i in range(count) for j in range(i + 1, count) if scene.mesh_of[i] != scene.mesh_of[j]]
+    unlike.sort(key=lambda pair: faces[list(pair)].sum())
+    touching = [pair for pair in unlike if pair in found]
+    return [touching[0], next(pair for pair in unlike if pair not in found)]
+
+
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_all_methods_find_the_same_pairs_of_several_meshes_and_the_judge_agrees(shape):
     for seed in range(4):
@@ -54,9 +64,7 @@ def test_all_methods_find_the_same_pairs_of_several_meshes_and_the_judge_agrees(
             assert detected(name, scene) == expected, (name, seed)
         found = {tuple(pair) for pair in expected}
         positions, quaternions = scene.bodies.positions, scene.bodies.quaternions
-        # a proof that two large surfaces are apart takes a minute
-        apart = [(0, 1), (2, 3)] if shape == "hull" else []
-        for i, j in [*list(found)[:3], *apart]:
+        for i, j in judged(scene, found):
             assert touches(scene, i, j, positions, quaternions) == ((i, j) in found)
 
 

@@ -66,3 +66,13 @@ def test_errors_of_gaps_are_those_that_were_made():
     nobody = NearAnswers(truth.at, truth.pairs[:, ::-1], truth.upper, np.full((len(every), 2, 3), np.nan))
     extra = gap_errors(scene, LAW, truth, nobody, WITHIN)
     assert (extra["missed_pairs"], extra["extra_pairs"]) == (1.0, 1.0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_triangles_that_cross_are_at_no_distance_without_a_warning():
+    """Warnings may be errors to whoever runs the program, and these would end a run."""
+    one, other = np.random.default_rng(259).normal(10.0, 1.0, (2, 100, 3, 3))
+    found = triangle_gaps(one, other)
+    crossing = found.upper == 0.0
+    assert 10 < crossing.sum() < 90
+    assert not found.lower[crossing].any()

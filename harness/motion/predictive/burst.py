@@ -21,6 +21,7 @@ def note_hit(world: World, k: int, now: float, window: float) -> None:
     """
     own, rules = world.spheres.schedule[k], world.rules
     own.hits += 1
+    own.changed = world.totals.counts[0].since_rebasing
     since = now - own.last_hit
     stalled = own.burst_hits >= rules.burst_limit and since <= 2.0 * rules.cooldown
     if since <= window:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from harness.kernel import step
 from harness.motion.predictive import tournament
 from harness.motion.predictive.codes import Event, ResponseCode
-from harness.motion.predictive.state import Record, World
+from harness.motion.predictive.state import Record, Records, World
 
 
 @step
@@ -66,6 +66,18 @@ def shift_times(world: World) -> None:
     clock.epoch = whole
     clock.now = 0.0
     world.totals.onset[0].time -= base
+    restart_count(world.spheres.schedule)
     world.totals.counts[0].since_rebasing = 0
     world.totals.counts[0].rebasings += 1
     tournament.rebuild(queue, world.spheres.schedule)
+
+
+@step
+def restart_count(schedule: Records) -> None:
+    """Count events from the present: what was predicted before is from event 0, or stale."""
+    for k in range(schedule.size):
+        own = schedule[k]
+        if own.partner >= 0:
+            own.predicted = 0 if schedule[own.partner].changed <= own.predicted else -1
+    for k in range(schedule.size):
+        schedule[k].changed = 0

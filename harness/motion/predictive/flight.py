@@ -1,9 +1,9 @@
 """The event loop of spheres: take the next event, carry it out, predict the next event of whom it concerned.
 
 Each sphere holds one event, its own earliest; a pair event is held by whichever of the two predicted last, with the
-other's count of hits. A held event can only be too early (the partner flew elsewhere), never too late: whoever
-changes its velocity looks at all its neighbours. So an event that turns out stale costs one more prediction and nothing
-else.
+number of the event after which it did. A held event can only be too early (the partner flew elsewhere), never too late:
+whoever changes its velocity looks at all its neighbours. So an event that turns out stale costs one more prediction and
+nothing else.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def process_event(world: World, k: int, now: float) -> FollowUp:
     layer = AROUND
     if own.kind == Event.PAIR:
         p = int(own.partner)
-        if schedule[p].hits == own.partner_hits:
+        if schedule[p].changed <= own.predicted:
             if world.rules.response == ResponseCode.NONE:
                 note_onset(world, k, p, now)
             elif hit_pair(world, k, p, now):
@@ -133,7 +133,7 @@ def predict(world: World, k: int, now: float, after: FollowUp) -> None:
     if after.task == Task.PREDICT or time < known or tie:
         own.pair_time = time
         own.partner = partner
-        own.partner_hits = schedule[partner].hits if partner >= 0 else 0
+        own.predicted = counts.since_rebasing
 
 
 @step

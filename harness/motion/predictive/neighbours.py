@@ -32,7 +32,7 @@ def renew(world: World, k: int) -> bool:
     room = True
     for m in range(count):
         p = found[m]
-        if p != k and near(lists, spheres.motions, k, p, world.rules.skin):
+        if p != k and near(lists, k, p, world.rules.skin):
             theirs = members[p]
             if degree == CAPACITY or theirs.count == CAPACITY:
                 room = False
@@ -46,11 +46,11 @@ def renew(world: World, k: int) -> bool:
 
 
 @step
-def near(lists: Lists, motions: Records, k: int, p: int, skin: float) -> bool:
+def near(lists: Lists, k: int, p: int, skin: float) -> bool:
     """Whether two anchors are within the radii and the skin."""
     anchors = lists.anchors
     x, y, z = anchors[p, 0] - anchors[k, 0], anchors[p, 1] - anchors[k, 1], anchors[p, 2] - anchors[k, 2]
-    reach = motions[k].radius + motions[p].radius + skin
+    reach = anchors[k, 3] + anchors[p, 3] + skin
     return bool(x * x + y * y + z * z < reach * reach)
 
 

@@ -87,7 +87,8 @@ def unscheduled(n: int) -> EventQueue:
 def empty_lists(motions: Records, neighbours: int) -> Lists:
     """Neighbour lists with nobody in them, anchored where the spheres are; none at all for another search."""
     n = len(motions) if neighbours == NeighbourSearch.LISTS else 0
-    return Lists(anchors=motions["position"][:n].copy(), members=aligned(n, NEIGHBOURS))
+    anchors = np.column_stack([motions["position"], motions["radius"]])[:n].copy()
+    return Lists(anchors=anchors, members=aligned(n, NEIGHBOURS))
 
 
 def no_contacts(n: int) -> Records:

@@ -38,15 +38,16 @@ SCHEDULE = np.dtype(
         ("pair_time", np.float64),  # s, of the earliest pair candidate; it outlives crossings
         ("last_hit", np.float64),  # s
         ("mass", np.float64),  # kg
-        ("hits", np.int32),  # how often the velocity changed: an event made for another count is stale
+        ("hits", np.int32),  # how often the velocity changed: a window made for another count is stale
+        ("changed", np.int32),  # at which event since the re-basing the velocity changed last, 0: before it
         ("partner", np.int32),  # the pair candidate, -1: none
-        ("partner_hits", np.int32),  # its hits when the pair was predicted
-        ("kind", np.int16),  # of the scheduled event, an `Event`
-        ("face", np.int16),  # that it is about, of the box or of the cell: x-, x+, y-, y+, z-, z+
+        ("predicted", np.int32),  # at which event it was; stale if the partner changed later. 0, -1: before, and stale
         ("label", np.int32),  # the caller's numbering, which breaks ties
         ("burst_hits", np.int32),  # of the present collision burst
         ("cell", np.int32, 3),  # along x, y, z
-        ("size_class", np.int32),
+        ("size_class", np.int16),
+        ("kind", np.int8),  # of the scheduled event, an `Event`
+        ("face", np.int8),  # that it is about, of the box or of the cell: x-, x+, y-, y+, z-, z+
     ],
     align=True,
 )
@@ -182,7 +183,7 @@ class Cells(NamedTuple):
 class Lists(NamedTuple):
     """Neighbours within touching distance + skin, of spheres that moved at most skin / 2 from their anchors."""
 
-    anchors: Floats  # (n, 3) m
+    anchors: Floats  # (n, 4) m, x, y, z and the radius: one line of the cache tells who is near
     members: Records  # (n,) of NEIGHBOURS
 
 

@@ -96,7 +96,8 @@ def _sure(field: Field) -> str:
         return f"in doubt: {field.doubt}"
     if len(field.ranked) == 1:
         return "the only one measured here that is right"
-    return f"told from all of the other {len(field.ranked) - 1}"
+    others = len(field.ranked) - 1
+    return "told from the other one" if others == 1 else f"told from all of the other {others}"
 
 
 def _second(field: Field) -> str:
