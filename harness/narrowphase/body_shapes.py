@@ -7,14 +7,14 @@ several meshes stand one after another in single arrays, of which a body's are a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, cast
 
 import numpy as np
-from numba.extending import overload
 from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints
+from harness.kernel import first_or_call, instruction
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.triangle_tree import TriangleTree
@@ -110,24 +110,6 @@ def begins_of(parts: Sequence[tuple[NDArray[Any], ...]]) -> Ints:
     return np.concatenate([np.zeros((1, lengths.shape[1]), np.int64), np.cumsum(lengths, axis=0)])
 
 
-def hull_of(hulls: Hulls, body: int) -> SupportMap:
-    """The hull of a body."""
-    found: SupportMap = _hull_among(hulls, body) if isinstance(hulls, SupportMaps) else hulls
-    return found
-
-
-def tree_of(trees: Surfaces, body: int) -> TriangleTree:
-    """The tree of triangles of a body."""
-    found: TriangleTree = _tree_among(trees, body) if isinstance(trees, TriangleTrees) else trees
-    return found
-
-
-def shape_of(shapes: Shapes, body: int) -> MeshShape:
-    """The surface of a body."""
-    found: MeshShape = _shape_among(shapes, body) if isinstance(shapes, MeshShapes) else shapes
-    return found
-
-
 def _hull_among(hulls: Any, body: int) -> Any:
     mesh = hulls.mesh_of[body]
     here, end = hulls.begins[mesh], hulls.begins[mesh + 1]
@@ -154,28 +136,23 @@ def _shape_among(shapes: Any, body: int) -> Any:
     return MeshShape(hull_of(shapes.hulls, body), tree_of(shapes.trees, body), shapes.radius)
 
 
-def _the_only(shapes: Any, body: int) -> Any:
-    return shapes
+def _hull_of(context: Any, hulls: Any, body: Any) -> Any:
+    return first_or_call(context, _hull_among if hulls.instance_class is SupportMaps else None, hulls, body)
 
 
-@overload(hull_of, inline="always")
-def _compiled_hull_of(hulls: Any, body: int) -> Any:
-    return _hull_among if hulls.instance_class is SupportMaps else _the_only_hull
+def _tree_of(context: Any, trees: Any, body: Any) -> Any:
+    return first_or_call(context, _tree_among if trees.instance_class is TriangleTrees else None, trees, body)
 
 
-@overload(tree_of, inline="always")
-def _compiled_tree_of(trees: Any, body: int) -> Any:
-    return _tree_among if trees.instance_class is TriangleTrees else _the_only_tree
+def _shape_of(context: Any, shapes: Any, body: Any) -> Any:
+    return first_or_call(context, _shape_among if shapes.instance_class is MeshShapes else None, shapes, body)
 
 
-@overload(shape_of, inline="always")
-def _compiled_shape_of(shapes: Any, body: int) -> Any:
-    return _shape_among if shapes.instance_class is MeshShapes else _the_only
+hull_of = cast(Callable[[Hulls, int], SupportMap], instruction(_hull_of))
+"""The hull of a body, in kernels."""
 
+tree_of = cast(Callable[[Surfaces, int], TriangleTree], instruction(_tree_of))
+"""The tree of triangles of a body, in kernels."""
 
-def _the_only_hull(hulls: Any, body: int) -> Any:
-    return hulls
-
-
-def _the_only_tree(trees: Any, body: int) -> Any:
-    return trees
+shape_of = cast(Callable[[Shapes, int], MeshShape], instruction(_shape_of))
+"""The surface of a body, in kernels."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, cast
 
 import numpy as np
-from numba.extending import overload
 
 from harness.arrays import Floats, Ints
+from harness.kernel import first_or_call, instruction
 from harness.narrowphase.body_shapes import MeshShapes, begins_of, shape_of, shapes_of_bodies
 from harness.narrowphase.gap import MeshGapShape
 from harness.narrowphase.triangle_blocks import TriangleBlocks
@@ -65,12 +65,6 @@ def gap_shapes_of_bodies(shapes: Sequence[MeshGapShape], mesh_of: Ints) -> GapSh
     return MeshGapShapes(meshes, blocks)
 
 
-def gap_shape_of(shapes: GapShapes, body: int) -> MeshGapShape:
-    """The surface of a body."""
-    found: MeshGapShape = _among(shapes, body) if isinstance(shapes, MeshGapShapes) else shapes
-    return found
-
-
 def _among(shapes: Any, body: int) -> Any:
     blocks = shapes.blocks
     mesh = blocks.mesh_of[body]
@@ -88,10 +82,9 @@ def _among(shapes: Any, body: int) -> Any:
     )
 
 
-def _the_only(shapes: Any, body: int) -> Any:
-    return shapes
+def _gap_shape_of(context: Any, shapes: Any, body: Any) -> Any:
+    return first_or_call(context, _among if shapes.instance_class is MeshGapShapes else None, shapes, body)
 
 
-@overload(gap_shape_of, inline="always")
-def _compiled_gap_shape_of(shapes: Any, body: int) -> Any:
-    return _among if shapes.instance_class is MeshGapShapes else _the_only
+gap_shape_of = cast(Callable[[GapShapes, int], MeshGapShape], instruction(_gap_shape_of))
+"""The surface of a body, in kernels."""

@@ -92,6 +92,14 @@ class Count(NamedTuple):
     given_up: int
 
 
+class Place(NamedTuple):
+    """Pair k of those asked about, of bodies i and j."""
+
+    k: int
+    i: int
+    j: int
+
+
 class Piece(NamedTuple):
     """A straight piece of a pair's way.
 
@@ -128,37 +136,19 @@ class Followed(NamedTuple):
 @kernel
 def sphere_pair_onsets(asked: PairsAsked, flights: FrameFlights, found: Onsets) -> Count:
     """All onsets of spheres."""
-    return pair_onsets(asked, flights, 0, found, no_solid, spheres_in_piece)
+    return pair_onsets(asked, flights, 0, found, spheres_in_piece)
 
 
 @kernel
 def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hulls: Hulls, found: Onsets) -> Count:
     """All onsets of bodies that have these hulls."""
-    return pair_onsets(asked, flights, hulls, found, hull_in, hulls_in_piece)
+    return pair_onsets(asked, flights, hulls, found, hulls_in_piece)
 
 
 @kernel
 def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shapes: Shapes, found: Onsets) -> Count:
     """All onsets of bodies that have these surfaces."""
-    return pair_onsets(asked, flights, shapes, found, surface_in, surfaces_in_piece)
-
-
-@inner
-def no_solid(nothing: int, body: int) -> int:
-    """What a sphere has of a solid."""
-    return nothing
-
-
-@inner
-def hull_in(hulls: Hulls, body: int) -> SupportMap:
-    """The hull of a body."""
-    return hull_of(hulls, body)
-
-
-@inner
-def surface_in(shapes: Shapes, body: int) -> MeshShape:
-    """The surface of a body."""
-    return shape_of(shapes, body)
+    return pair_onsets(asked, flights, shapes, found, surfaces_in_piece)
 
 
 @inner
@@ -167,10 +157,9 @@ def pair_onsets(
     flights: FrameFlights,
     solids: Solids,
     found: Onsets,
-    solid_of: Callable[[Solids, int], Shape],
-    in_piece: Callable[[Shape, Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+    in_piece: Callable[[Solids, Place, Motion, Motion, Piece, Followed, Onsets], Followed],
 ) -> Count:
-    """The onsets of all pairs, in order, given what a body has of the solids, and what follows a pair on its way."""
+    """The onsets of all pairs, in order, given what follows a pair of the solids through a straight piece."""
     count, given_up, place = 0, 0, 0
     pair = pair_flight()
     for k in range(len(asked.pairs)):
@@ -186,14 +175,15 @@ def pair_onsets(
             continue
         flight_of_pair(flights, i, j, pair)
         now = 0.0
-        one, other = solid_of(solids, i), solid_of(solids, j)
         while True:
             straight = until_fold(flights, i, j, pair)
             wait = min(straight, flights.duration - now)
             a, b = motion_in(flights, i, pair, 0, now), motion_in(flights, j, pair, 1, now)
             tolerance = asked.tolerance * 0.5 * (a.size + b.size)
             piece = Piece(now, wait, straight, tolerance, asked.first and now == 0.0)
-            followed = again_if_unknown(one, other, a, b, piece, Followed(state, count, True), k, found, in_piece)
+            followed = again_if_unknown(
+                solids, Place(k, i, j), a, b, piece, Followed(state, count, True), found, in_piece
+            )
             state, count = followed.state, followed.onsets
             given_up += not followed.known
             if now + wait >= flights.duration:
@@ -207,15 +197,14 @@ def pair_onsets(
 
 @inner
 def again_if_unknown(
-    one: Shape,
-    other: Shape,
+    solids: Solids,
+    place: Place,
     a: Motion,
     b: Motion,
     piece: Piece,
     before: Followed,
-    k: int,
     found: Onsets,
-    in_piece: Callable[[Shape, Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+    in_piece: Callable[[Solids, Place, Motion, Motion, Piece, Followed, Onsets], Followed],
 ) -> Followed:
     """A pair through a piece, and again at a larger tolerance where a search is given up.
 
@@ -224,7 +213,7 @@ def again_if_unknown(
     """
     after = before
     for _ in range(MOST_SEARCHES):
-        after = in_piece(one, other, a, b, piece, before, k, found)
+        after = in_piece(solids, place, a, b, piece, before, found)
         if after.known:
             break
         piece = Piece(piece.begin, piece.length, piece.straight, COARSER * piece.tolerance, piece.settled)
@@ -233,7 +222,7 @@ def again_if_unknown(
 
 @kernel
 def spheres_in_piece(
-    nothing: int, neither: int, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    nothing: int, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Spheres touch once in a straight piece, from a root of a quadratic to the next."""
     gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
@@ -244,24 +233,26 @@ def spheres_in_piece(
     # what touches at the start has been noted, unless rounding has put its beginning off until now: then it approaches
     begins = met.enter > 0.0 or (not piece.settled and dot(gap, drift) < 0.0)
     if begins and not before.state.touches:
-        count = noted(found, count, k, piece.begin + max(met.enter, 0.0))
+        count = noted(found, count, place.k, piece.begin + max(met.enter, 0.0))
     return Followed(PairState(met.leave >= piece.length, 0.0, False, ROOTS, 0.0, 0), count, True)
 
 
 @kernel
 def hulls_in_piece(
-    one: SupportMap, other: SupportMap, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    hulls: Hulls, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Hulls, from contact to contact."""
-    return solids_in_piece(one, other, a, b, piece, before, k, found, next_hull_contact, followed_hulls)
+    solids = hull_of(hulls, place.i), hull_of(hulls, place.j)
+    return solids_in_piece(solids, place.k, a, b, piece, before, found, next_hull_contact, followed_hulls)
 
 
 @kernel
 def surfaces_in_piece(
-    one: MeshShape, other: MeshShape, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    shapes: Shapes, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Surfaces, from contact to contact."""
-    return solids_in_piece(one, other, a, b, piece, before, k, found, next_mesh_contact, followed_surfaces)
+    solids = shape_of(shapes, place.i), shape_of(shapes, place.j)
+    return solids_in_piece(solids, place.k, a, b, piece, before, found, next_mesh_contact, followed_surfaces)
 
 
 @kernel
@@ -293,18 +284,18 @@ def followed_surfaces(
 
 @inner
 def solids_in_piece(
-    one: Shape,
-    other: Shape,
+    solids: tuple[Shape, Shape],
+    k: int,
     a: Motion,
     b: Motion,
     piece: Piece,
     before: Followed,
-    k: int,
     found: Onsets,
     next_contact: Callable[[Shape, Shape, Motion, Motion, float, float, float], Onset],
     end_of_contact: Callable[[Shape, Shape, Motion, Motion, PairState, float, float], tuple[ContactEnd, PairState]],
 ) -> Followed:
     """From contact to contact, given what finds the next one and what follows it to its end."""
+    one, other = solids
     state, count, parted = before.state, before.onsets, -1.0
     while state.until < piece.length or (state.onset and state.until <= piece.length):
         if state.touches:
