@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from functools import update_wrapper
+from functools import cache, update_wrapper
 from threading import RLock
 from typing import Any, TypeVar, cast
 
@@ -128,11 +128,17 @@ def first_or_call(context: Any, body: Callable[..., Any] | None, *kinds: Any) ->
         return kinds[0](*kinds), lambda context, builder, signature, arguments: borrowed(
             context, builder, signature.return_type, arguments[0]
         )
-    dispatched: Any = types.Dispatcher(_njit(error_model="numpy")(body))
+    dispatched: Any = types.Dispatcher(_to_be_typed(body))
     signature = context.resolve_function_type(dispatched, kinds, {})
     return signature, lambda context, builder, signature, arguments: context.compile_internal(
         builder, body, signature, arguments
     )
+
+
+@cache
+def _to_be_typed(body: Callable[..., Any]) -> Any:
+    """A function as numba types it; kept, because numba's own types do not keep it."""
+    return _njit(error_model="numpy")(body)
 
 
 _lock = RLock()
