@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from harness.arrays import Floats, Pairs
 from harness.backends.contract import require_pairs
 from harness.backends.protocol import Backend
-from harness.broadphase.ignored import without
+from harness.scene.ignored_pairs import without
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
 

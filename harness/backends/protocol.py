@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from harness.arrays import Floats, Pairs
 from harness.scene.hull import Hull
-from harness.scene.scene import Scene, Solid
+from harness.scene.scene import Scene, Solid, by_solid
 from harness.vocabulary import Query, Shape
 
 
@@ -174,8 +174,7 @@ def own_hulls(backend: Backend) -> Mapping[Solid, Hull]:
 
     A comparison gives them to the other backend too, so that both are asked about the same solids.
     """
-    held: Mapping[Solid | float, Hull] = getattr(backend, "own_hulls", {})
-    return {solid if isinstance(solid, tuple) else (0, solid): hull for solid, hull in held.items()}
+    return by_solid(getattr(backend, "own_hulls", {}))
 
 
 def own_hulls_tolerance(backend: Backend) -> float:

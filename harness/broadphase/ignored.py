@@ -1,32 +1,12 @@
-"""Pairs that are never asked about, such as the neighbouring links of a robot."""
+"""A broad phase without the pairs that a scene ignores."""
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from harness.arrays import Flags, Pairs
+from harness.arrays import Pairs
 from harness.broadphase.pairs import BroadPhase
-
-
-def kept(pairs: Pairs, ignored: Pairs) -> Flags:
-    """Which pairs are not ignored, (k,).
-
-    Parameters
-    ----------
-    pairs : (k, 2) int array, i < j
-    ignored : (m, 2) int array, i < j, sorted
-
-    >>> kept(np.array([[0, 1], [0, 2]]), np.array([[0, 1]])).tolist()
-    [False, True]
-    """
-    flags: Flags = ~np.isin(pairs[:, 0] << 32 | pairs[:, 1], ignored[:, 0] << 32 | ignored[:, 1])
-    return flags
-
-
-def without(pairs: Pairs, ignored: Pairs) -> Pairs:
-    """The pairs that are not ignored; parameters as for `kept`."""
-    return pairs[kept(pairs, ignored)] if len(ignored) else pairs
+from harness.scene.ignored_pairs import without
 
 
 def asked_about(broad_phase: BroadPhase, ignored: Pairs) -> BroadPhase:

@@ -10,9 +10,9 @@ import numpy as np
 from harness.arrays import Flags, Floats
 from harness.backends.contract import read_only, require_gaps, require_impacts, require_pairs
 from harness.backends.protocol import Distances, Impacts, ImpactTimes, Near, NearPairs
-from harness.broadphase.ignored import kept as kept_of
 from harness.methods.impact_times import FrameMotion
 from harness.motion.kinematics import turn
+from harness.scene.ignored_pairs import kept as kept_of
 from harness.scene.scene import Scene
 from harness.vocabulary import Query
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
-from harness.broadphase.ignored import kept
+from harness.scene.ignored_pairs import kept
 
 
 @dataclass(frozen=True, eq=False)

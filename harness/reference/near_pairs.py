@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.arrays import Floats, Ints, Pairs
-from harness.broadphase.ignored import without
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.reference.body_gaps import GapBounds, sphere_bounds, surface_bounds
+from harness.scene.ignored_pairs import without
 from harness.scene.mesh import Surface
 from harness.scene.scene import Scene
 

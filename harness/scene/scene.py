@@ -19,6 +19,11 @@ Solid = tuple[int, float]
 """What bodies share that have the same solid: the number of their mesh, and their size, m."""
 
 
+def by_solid(hulls: Mapping[Solid, Hull] | Mapping[float, Hull]) -> dict[Solid, Hull]:
+    """Hulls by what bodies share, of hulls that may be given by size (m) alone, which is enough of one mesh."""
+    return {solid if isinstance(solid, tuple) else (0, solid): hull for solid, hull in hulls.items()}
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Everything a run starts from.
@@ -54,6 +59,7 @@ class Scene:
         if len(numbers) != len(self.bodies) or (numbers >= max(1, len(self.meshes))).any():
             raise ValueError("each body has a mesh, one of those that there are")
         object.__setattr__(self, "mesh_of", numbers)
+        object.__setattr__(self, "hulls", by_solid(self.hulls))
 
     @property
     def mesh(self) -> Mesh | None:

@@ -30,7 +30,7 @@ def points(text=GAS, **leaves):
 
 def metrics(text=GAS, **leaves):
     (point,) = points(text, **leaves)
-    return execute(point, None).metrics
+    return execute(point, SceneFiles()).metrics
 
 
 @pytest.mark.slow
