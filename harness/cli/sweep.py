@@ -159,7 +159,17 @@ def _compare(
     lines = _survey(surveys, meshes, database, command, arguments) if surveys else []
     if not crosschecked:
         return lines
-    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, event_methods, kept, key_of, reductions
+    from harness.cli.crosscheck import (
+        SHOWN,
+        SWEPT,
+        backends_of,
+        cross_check,
+        event_methods,
+        kept,
+        key_of,
+        pairs_of,
+        reductions,
+    )
     from harness.compare.budget import Budget
     from harness.compare.document import Known
     from harness.compare.event_audit import FRAMES
@@ -168,16 +178,16 @@ def _compare(
     for experiment in crosschecked:
         names, _ = backends_of(experiment)
         events = event_methods(experiment)
-        pairs = [(a, b) for place, a in enumerate(names) for b in names[place + 1 :]]
-        pairs += [(FRAMES, name) for name in events]
-        keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs}
+        keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs_of(names, events)}
         wanted = {pair for pair, key in keys.items() if key not in done}
         if not wanted:
             continue
-        asked = tuple(name for name in names if any(name in pair for pair in wanted))
+        involved = {name for pair in wanted for name in pair}
+        asked = {query: tuple(name for name in named if name in involved) for query, named in names.items()}
         left = tuple(name for name in events if (FRAMES, name) in wanted)
         if not arguments.quiet:
-            print(f"{experiment.name}: comparing {', '.join((*asked, *left))}", file=sys.stderr)
+            all_asked = dict.fromkeys(name for named in asked.values() for name in named)
+            print(f"{experiment.name}: comparing {', '.join((*all_asked, *left))}", file=sys.stderr)
         budget = Budget(_COMPARING)
         known: Known = {}
         for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=left):
