@@ -15,6 +15,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -205,24 +206,24 @@ def _print(found: Comparison) -> None:
     for tally in found.tallies:
         counts = ", ".join(f"{kind} {getattr(tally, kind)}" for kind in kinds)
         if not MethodName.read(tally.backends[1], tally.shape).stepped:
-            print(
+            say(
                 f"{tally.backends[1]}, {tally.shape}: {tally.verdicts} contacts that begin within {tally.poses} frames "
                 f"while bodies approach, without response, each held against exact arithmetic: agree {tally.agree}, "
                 f"undecided {tally.undecided}, real {tally.real}"
             )
             continue
-        print(
+        say(
             f"{' and '.join(tally.backends)}, {_asked(tally)}{tally.shape}: {tally.verdicts} verdicts "
             f"{'in' if tally.query == 'impact' else 'at'} {tally.poses} "
             f"{'frames' if tally.query == 'impact' else 'poses'}: {counts}"
         )
     for checked in found.checked:
-        print(
+        say(
             f"{' and '.join(checked.backends)}, {_asked(checked)}{checked.shape}: of what they agree on, "
             f"{checked.verdicts} verdicts were judged: {checked.contradicted} wrong"
         )
     for one in found.approximations:
-        print(
+        say(
             f"{one.backend} for {one.shape}, as bodies fly: {one.false_share:.3g} of its hits are none "
             f"({one.false_hits} of {one.reported}), {one.missed_share:.3g} of the touching pairs are missed "
             f"({one.misses} of {one.touching})"
@@ -233,15 +234,15 @@ def _print(found: Comparison) -> None:
             f"{one.backend} {one.pair_hits_per_second:.4g} pair hits a second, energy {one.energy_change:+.2g}"
             for one in flight.afterwards
         )
-        print(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
+        say(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
     for line in found.unsupported:
-        print(line)
+        say(line)
     for line in found.left_out:
-        print(f"left out: {line}")
+        say(f"left out: {line}")
     for case in found.cases + found.shared:
-        print(_sentence(case))
+        say(_sentence(case))
     for failure in found.failures:
-        print(_failed(failure))
+        say(_failed(failure))
 
 
 def _failed(failure: Failure) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 from harness.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -289,8 +290,8 @@ def _print_what_would_be_done(
     else:
         time = f"about {duration_text(total + START_UP * len(backends))}, from earlier runs of {known} of them"
     for why in work.lacking.values():
-        print(f"points passed over: {why}")
-    print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
+        say(f"points passed over: {why}")
+    say(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
 def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
@@ -307,20 +308,20 @@ def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
         _print_table(["experiment", "runs", "failed", "time"], rows)
     counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
     by_status = f" ({counts})" if counts else ""
-    print(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
+    say(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
     if summary.controls:
-        print(f"{summary.controls} of them done twice, as a control of the noise")
+        say(f"{summary.controls} of them done twice, as a control of the noise")
     failed_before = summary.kept.total() - summary.kept["ok"]
     if failed_before:
-        print(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
+        say(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
     for why in summary.lacking:
-        print(f"points passed over: {why}")
+        say(f"points passed over: {why}")
     for experiment, statement in summary.broken:
-        print(f"{experiment}: expectation fails: {statement}")
+        say(f"{experiment}: expectation fails: {statement}")
     option = "" if arguments.db == DATABASE else f" --db {shlex.quote(arguments.db)}"
     if arguments.db.startswith("-"):  # else it would be taken for an option
         option = option.replace("--db ", "--db=", 1)
-    print(f"Now `harness report{option}` turns {arguments.db} into pages.")
+    say(f"Now `harness report{option}` turns {arguments.db} into pages.")
 
 
 def _print_table(titles: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,8 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
     for time, (i, j), wall in zip(traced.times.tolist(), traced.bodies.tolist(), traced.walls.tolist(), strict=True):
         near = " are near" if traced.near else ""
         what = f"bodies {i} and {j}{near}" if wall < 0 else f"body {i} and wall {WALLS[wall]}"
-        print(f"{time:.9g} s  {what}")
+        say(f"{time:.9g} s  {what}")
     counters = "  ".join(f"{name} {value}" for name, value in traced.counters.items())
     events = "events" if traced.near else "hits"
-    print(f"{len(traced.times)} {events} in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
+    say(f"{len(traced.times)} {events} in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
     return 0
