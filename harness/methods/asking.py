@@ -156,7 +156,8 @@ class NearAsking(Asking):
         pairs, gaps, points = finder.checked(found)
         flight.near += len(pairs)
         if flight.log is not None:
-            flight.log.add(number, pairs, *((gaps, points) if self._gaps else (None, None)))
+            # two points that are near show that the pair is, also where no gap was asked for
+            flight.log.add(number, pairs, gaps if self._gaps else None, points)
         flight.observer.frame(time, pairs, flight.onsets.of(pairs), flight.folds.by(time))
 
     def found(self, flight: _Flight, times: float) -> dict[str, float]:
