@@ -128,7 +128,7 @@ class Trace:
 
     def _near_rows(self, answers: NearAnswers) -> list[dict[str, Any]]:
         columns = answers.frames.tolist(), answers.pairs.tolist(), answers.gaps.tolist()
-        there: Flags = np.isfinite(answers.points).all(axis=(1, 2))
+        there: list[bool] = np.asarray(np.isfinite(answers.points).all(axis=(1, 2))).tolist()
         return [
             {
                 "frame": frame,
