@@ -50,6 +50,13 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         arrays["vertex_starts"] = ("u4", _starts([len(surface.vertices) for surface in recording.surfaces]))
         arrays["face_starts"] = ("u4", _starts([len(surface.faces) for surface in recording.surfaces]))
         arrays["mesh_of"] = ("u4", recording.surface_of)
+    near = recording.near
+    if near is not None:
+        arrays["near_frames"] = ("u4", near.frames)
+        arrays["near_first"], arrays["near_second"] = (("i4", near.pairs[:, side]) for side in (0, 1))
+        arrays["near_points"] = ("f4", near.points)
+    if recording.hit_points is not None:
+        arrays["hit_points"] = ("f4", recording.hit_points)
     places: dict[str, tuple[str, int, int]] = {}
     content = bytearray()
     for name, (kind, values) in arrays.items():

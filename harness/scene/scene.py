@@ -143,6 +143,11 @@ class Scene:
         return float(np.cbrt(self.box.volume))
 
     @property
+    def pair_count(self) -> int:
+        """Of pairs that are asked about: all but the ignored."""
+        return len(self.bodies) * (len(self.bodies) - 1) // 2 - len(self.ignored)
+
+    @property
     def mean_size(self) -> float:
         """m. Mean diameter of the bounding spheres; 0 without bodies."""
         return float(self.bodies.sizes.mean()) if len(self.bodies) else 0.0
