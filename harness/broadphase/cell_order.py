@@ -2,8 +2,8 @@
 
 Sorted in one pass, a million bodies would be written to places all over the memory, and most writes would wait for it.
 So the first pass puts them into buckets of a few thousand cells that follow one another, few enough that the ends of
-all of them stay in a processor's cache; the second sorts each bucket, which stays there as a whole. Nothing is kept from
-frame to frame, so that bodies may move as they like.
+all of them stay in a processor's cache; the second sorts each bucket, which stays there as a whole. Nothing is kept
+from frame to frame, so that bodies may move as they like.
 """
 
 from __future__ import annotations
