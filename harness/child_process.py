@@ -141,7 +141,7 @@ class Child:
 
         Parameters
         ----------
-        main : what the child does; what it raises is printed
+        main : what the child does; what it raises is printed, and its exit code is then 1
         output : descriptor of the file that takes what the child prints; by default nothing does
         """
         ours, theirs = socket.socketpair()
@@ -309,6 +309,7 @@ def _kill_descendants(process: int) -> None:
 
 def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, output: int | None) -> NoReturn:
     """What a forked child does; it never returns, whatever happens."""
+    code = 1
     try:
         isolate(output)
         if output is not None:
@@ -319,10 +320,11 @@ def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, outpu
         )
         if os.getppid() == parent:  # else it has ended already
             main(Channel(end))
+        code = 0
     except BaseException:
         traceback.print_exc()
     finally:
         with suppress(BaseException):
             sys.stdout.flush()
             sys.stderr.flush()
-        os._exit(0)
+        os._exit(code)

@@ -8,6 +8,8 @@ import math
 import os
 import resource
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_GET_CHILD_SUBREAPER = 1, 36, 37
 
@@ -51,6 +53,16 @@ def limit(*, memory: int | None = None, output: int | None = None, processor: fl
     if processor is not None:
         used = resource.getrusage(resource.RUSAGE_SELF)
         _lower(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + processor), for_good=False)
+
+
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Until the end of this context no SIGINT reaches this thread; what is started meanwhile never gets any."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def adopt_orphans() -> None:

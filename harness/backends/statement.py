@@ -1,8 +1,8 @@
 """What a backend says of itself: why it cannot be used, or its shapes, tolerances and approximations.
 
 Those of this package are asked here, once for all commands as long as nothing is installed or removed: their libraries
-take a second to import. A stranger's is imported in a process of its own, so that one that exits, hangs
-or prints costs its own line only:
+take a second to import. A stranger's is imported in a process of its own, so that one that exits, hangs, prints or
+leaves a process behind costs its own line only:
 
     python -m harness.backends.statement FD NAME
 """
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import sys
 from collections.abc import Mapping
@@ -116,7 +117,7 @@ def _say_once(name: str, path: tuple[str, ...]) -> Statement:
         return said
     said = _say(name)
     if said.missing is None:
-        keep("statements", key, json.dumps(asdict(said)).encode())
+        keep("statements", key, _written(said))
     return said
 
 
@@ -155,11 +156,21 @@ def _say(name: str) -> Statement:
 
 def _say_elsewhere(name: str, seconds: float) -> Statement:
     with Child.spawn("harness.backends.statement", [name], os.environ) as child:
-        answer = child.receive(seconds)
-        if answer == "timeout":
-            return Statement(f"importing it did not end within {seconds:g} s")
-        if not isinstance(answer, bytes):
-            return Statement(f"importing it ended its process with {child.end()}")
+        return _answer(child, seconds)
+
+
+def _say_and_leave_nothing(name: str) -> Statement:
+    """In a process forked from this one, which adopts what that one leaves behind and ends it."""
+    with Child.fork(lambda channel: channel.send(_written(_say(name)))) as child:
+        return _answer(child, math.inf)
+
+
+def _answer(child: Child, seconds: float) -> Statement:
+    answer = child.receive(seconds)
+    if answer == "timeout":
+        return Statement(f"importing it did not end within {seconds:g} s")
+    if not isinstance(answer, bytes):
+        return Statement(f"importing it ended its process with {child.end()}")
     return _read(answer) or Statement("what it says of itself is garbage")
 
 
@@ -172,11 +183,16 @@ def _read(said: bytes) -> Statement | None:
         return None
 
 
+def _written(said: Statement) -> bytes:
+    """A statement as JSON."""
+    return json.dumps(asdict(said)).encode()
+
+
 def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
 if __name__ == "__main__":
     isolate()
-    Channel(int(sys.argv[1])).send(json.dumps(asdict(_say(sys.argv[2]))).encode())
+    Channel(int(sys.argv[1])).send(_written(_say_and_leave_nothing(sys.argv[2])))
     os._exit(0)

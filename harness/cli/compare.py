@@ -1,7 +1,8 @@
 """Compare backends with each other, and with exact arithmetic, on the same poses.
 
-The bodies of each scene fly through each other, whatever its response, and every backend is asked about every frame;
-scenes of random bodies are followed by pairs at first contact, where verdicts are hardest. Where the experiment has a
+The bodies of each scene fly through each other, whatever its response, and every backend is asked about every frame
+what `engine.query` says: which bodies touch, which are near, how far apart they are, or when they begin to touch.
+Scenes of random bodies are followed by pairs at first contact, where verdicts are hardest. Where the experiment has a
 response, its first such scene is run as well by every backend for itself: the time of the first hit that only one of
 two answers is told, and the averages of both runs after it. What is found is kept in the database, and
 `harness report` shows it. Exits 1 if a backend is wrong beyond what its tolerance or its approximation explains, or
@@ -14,6 +15,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from harness.compare.atlas import Cell
     from harness.compare.document import Known, Reduced
     from harness.compare.outcome import Case, Comparison, Failure
+    from harness.compare.tally import Counts
     from harness.scene.mesh import Mesh
 
 DATABASE = "results/results.db"
@@ -100,7 +103,8 @@ def run(arguments: argparse.Namespace) -> int:
         names, lacking = backends_of(experiment, chosen)
         events = event_methods(experiment, chosen)
         whole.unsupported += lacking
-        progress(f"{experiment.name}: {', '.join((*names, *events))}")
+        all_names = dict.fromkeys(name for asked in names.values() for name in asked)
+        progress(f"{experiment.name}: {', '.join((*all_names, *events))}")
         for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget, events):
             small = reductions(found, meshes, SAVED if arguments.save else SHOWN, known)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
@@ -135,7 +139,7 @@ def _chosen(text: str | None) -> tuple[str, ...]:
     from harness.backends.registry import names
     from harness.errors import InputError
     from harness.experiment.messages import listed, near, shown
-    from harness.vocabulary import ALGORITHMS, algorithms_of
+    from harness.vocabulary import ALGORITHMS, QUERIES, algorithms_of
 
     if text is None:
         return ()
@@ -145,7 +149,9 @@ def _chosen(text: str | None) -> tuple[str, ...]:
         if backend not in names():
             hint = near(backend, names()) or f"; there are {listed(names())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
-        possible = [word for word in algorithms_of(backend) if ALGORITHMS[word].own]
+        # of queries other than collision also the backend's own; which experiments ask is known when they are read
+        possible = [word for query in QUERIES for word in algorithms_of(backend, query) if ALGORITHMS[word].stepped]
+        possible = list(dict.fromkeys(possible))
         if stroke and algorithm not in possible:
             hint = near(algorithm, possible) or (f"; there are {listed(possible)}" if possible else "")
             raise InputError(f"--backends: {backend} cannot be asked at poses with algorithm {shown(algorithm)}{hint}")
@@ -200,22 +206,24 @@ def _print(found: Comparison) -> None:
     for tally in found.tallies:
         counts = ", ".join(f"{kind} {getattr(tally, kind)}" for kind in kinds)
         if not MethodName.read(tally.backends[1], tally.shape).stepped:
-            print(
+            say(
                 f"{tally.backends[1]}, {tally.shape}: {tally.verdicts} contacts that begin within {tally.poses} frames "
                 f"while bodies approach, without response, each held against exact arithmetic: agree {tally.agree}, "
                 f"undecided {tally.undecided}, real {tally.real}"
             )
             continue
-        print(
-            f"{' and '.join(tally.backends)}, {tally.shape}: {tally.verdicts} verdicts at {tally.poses} poses: {counts}"
+        say(
+            f"{' and '.join(tally.backends)}, {_asked(tally)}{tally.shape}: {tally.verdicts} verdicts "
+            f"{'in' if tally.query == 'impact' else 'at'} {tally.poses} "
+            f"{'frames' if tally.query == 'impact' else 'poses'}: {counts}"
         )
     for checked in found.checked:
-        print(
-            f"{' and '.join(checked.backends)}, {checked.shape}: of what they agree on, {checked.verdicts} verdicts "
-            f"were judged: {checked.contradicted} wrong"
+        say(
+            f"{' and '.join(checked.backends)}, {_asked(checked)}{checked.shape}: of what they agree on, "
+            f"{checked.verdicts} verdicts were judged: {checked.contradicted} wrong"
         )
     for one in found.approximations:
-        print(
+        say(
             f"{one.backend} for {one.shape}, as bodies fly: {one.false_share:.3g} of its hits are none "
             f"({one.false_hits} of {one.reported}), {one.missed_share:.3g} of the touching pairs are missed "
             f"({one.misses} of {one.touching})"
@@ -226,15 +234,15 @@ def _print(found: Comparison) -> None:
             f"{one.backend} {one.pair_hits_per_second:.4g} pair hits a second, energy {one.energy_change:+.2g}"
             for one in flight.afterwards
         )
-        print(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
+        say(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
     for line in found.unsupported:
-        print(line)
+        say(line)
     for line in found.left_out:
-        print(f"left out: {line}")
+        say(f"left out: {line}")
     for case in found.cases + found.shared:
-        print(_sentence(case))
+        say(_sentence(case))
     for failure in found.failures:
-        print(_failed(failure))
+        say(_failed(failure))
 
 
 def _failed(failure: Failure) -> str:
@@ -263,12 +271,37 @@ def _count(text: str) -> int:
 _seconds.__name__, _count.__name__ = "number of seconds", "number"  # argparse names them in its messages
 
 
+def _asked(counts: Counts) -> str:
+    """What was asked, of queries other than collision."""
+    return "" if counts.query == "collision" else f"{counts.query}, "
+
+
 def _sentence(case: Case) -> str:
-    truth = case.judgement
-    state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
+    truth, asked = case.judgement, case.question
     verb = "are both" if case.both_wrong else "is"
+    about = "" if asked.query == "collision" else f" about {asked.text}"
     i, j = case.bodies
+    state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
     return (
-        f"{case.wrong} {verb} wrong: at {case.pose.name} (call {case.query_index}) bodies {i} and {j} {state}, "
-        f"proven by a {truth.certificate['kind']}"
+        f"{case.wrong} {verb} wrong{about}: at {case.pose.name} (call {case.query_index}) bodies {i} and {j} {state}"
+        f"{_told(case)}, proven by {_article(truth.certificate['kind'])}"
     )
+
+
+def _told(case: Case) -> str:
+    """What was said instead, of queries other than collision."""
+    from math import isinf
+
+    query, told = case.question.query, case.told
+    if query == "collision" or told is None:
+        return ""
+    when = f" {case.moment:.9g} s after its start" if query == "impact" else ""
+    if isinf(told):
+        return f"{when}, and it does not report them"
+    if query == "impact":
+        return f"{when}, and it says that they begin to touch at {told:.9g} s"
+    return ", and it says that they are near" if query == "tolerance" else f", and it says {told:.9g} m"
+
+
+def _article(kind: str) -> str:
+    return kind if kind.startswith("nearest") else f"a {kind}"

@@ -2,28 +2,31 @@
 
 `compare` asks about every frame and every hard pose. A sweep asks, of an experiment with `measure: {compare: on}`,
 about as many frames of each scene as make 60 000 verdicts, and about every twenty-third first contact; scenes of which
-two frames are more than that are left out.
+two frames are more than that are left out. Of an experiment with several queries each is asked, of the methods that it
+names for it.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.compare.budget import Budget
-from harness.compare.comparison import compare_all
+from harness.compare.comparison import Found, compare_all
 from harness.compare.document import Known, Reduced, document, reduced, shown_case
 from harness.compare.event_audit import FRAMES, audit_events
 from harness.compare.free_running import run_both
-from harness.compare.hard_poses import hard_poses
+from harness.compare.hard_questions import hard_questions
 from harness.compare.outcome import Comparison
 from harness.compare.poses import PoseSet, flown
+from harness.compare.question import COLLISION, Question
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import package_versions
@@ -33,9 +36,18 @@ from harness.runner.servers import mesh_of
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from harness.vocabulary import MethodName
+from harness.vocabulary import MethodName, Query, algorithms_of
 
-DEFAULT = ("fcl", "pybullet")
+DEFAULT: Mapping[Query, tuple[str, str]] = {
+    "collision": ("fcl", "pybullet"),
+    "tolerance": ("fcl", "pybullet"),
+    "distance": ("fcl", "pybullet"),
+    "impact": ("fcl", "fcl/native"),
+}
+"""What is compared where an experiment names fewer than two."""
+
+Asked = dict[Query, tuple[str, ...]]
+"""By query, the methods that are asked it."""
 
 Meshes = Mapping[Path, Mesh]
 
@@ -71,24 +83,50 @@ SWEPT = Extent(verdicts=60_000, every=23, flown=600)
 SHOWN, SAVED = 2, 5
 
 
-def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[tuple[str, ...], list[str]]:
-    """The backends to compare: those chosen, else those the experiment names, else the default; and what is missing.
+def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[Asked, list[str]]:
+    """Of each query the backends to compare: those chosen, else those the experiment names for it, else the default.
+
+    Also what is missing.
 
     Raises
     ------
     InputError
-        If one was chosen that is not installed, or fewer than two are left.
+        If one was chosen that is not installed or cannot be asked, or fewer than two are left.
     """
     methods = [MethodName.of(point.parameters) for point in experiment.points]
-    named = tuple(dict.fromkeys(method.short for method in methods if method.stepped))
-    wanted = chosen or (named if len(named) > 1 else DEFAULT)
-    lacking = {name: why for name in wanted if (why := missing(name.partition("/")[0])) is not None}
-    if chosen and lacking:
-        raise InputError("\n".join(lacking.values()))
-    left = tuple(name for name in wanted if name not in lacking and _stepped(name))
-    if len(left) + len(event_methods(experiment, chosen)) < 2:
-        raise InputError(f"{experiment.path}: nothing to compare; {'; '.join(lacking.values())}")
-    return left, list(lacking.values())
+    asked, missing_ones = Asked(), dict[str, str]()
+    for query in dict.fromkeys(method.query for method in methods):
+        named = tuple(dict.fromkeys(one.short for one in methods if one.stepped and one.query == query))
+        wanted = chosen or (named if len(named) > 1 else DEFAULT[query])
+        lacking = {name: why for name in wanted if (why := missing(name.partition("/")[0])) is not None}
+        if chosen and lacking:
+            raise InputError("\n".join(lacking.values()))
+        _refuse_algorithms(chosen, query)
+        left = tuple(name for name in wanted if name not in lacking and _stepped(name))
+        events = event_methods(experiment, chosen) if query == "collision" else ()
+        if len(left) + len(events) < 2:
+            of_query = "" if query == "collision" else f" of query {query}"
+            raise InputError(f"{experiment.path}: nothing to compare{of_query}; {'; '.join(lacking.values())}")
+        asked[query] = left
+        missing_ones |= lacking
+    return asked, list(missing_ones.values())
+
+
+def _refuse_algorithms(names: Sequence[str], query: Query) -> None:
+    """Raises InputError for a method that some query can be put to, but not this one."""
+    for name in names:
+        backend, stroke, algorithm = name.partition("/")
+        if stroke and algorithm not in (possible := algorithms_of(backend, query)):
+            raise InputError(
+                f"--backends: {backend} cannot be asked query {query} with algorithm {algorithm}, only with "
+                f"{', '.join(possible)}"
+            )
+
+
+def pairs_of(names: Asked, events: Sequence[str] = ()) -> list[tuple[str, str]]:
+    """Every two methods that are held against each other, of any query; last those that compute events."""
+    found = [pair for asked in names.values() for pair in combinations(asked, 2)]
+    return [*dict.fromkeys(found), *((FRAMES, name) for name in events)]
 
 
 def event_methods(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -104,7 +142,7 @@ def _stepped(name: str) -> bool:
 def cross_check(
     experiment: Experiment,
     meshes: Meshes,
-    names: tuple[str, ...],
+    names: Asked,
     extent: Extent,
     progress: Callable[[str], None] = lambda line: None,
     budget: Budget | None = None,
@@ -118,11 +156,16 @@ def cross_check(
     for name in events:
         progress(f"{name}: contacts of the same motion")
         yield (FRAMES, name), _events(experiment, meshes, name, extent, budget)
-    if len(names) < 2:
-        return
-    compared = compare_all(_pose_sets(experiment, meshes, extent), names, progress, budget=budget)
+    compared: Found = {}
+    for query, asked in names.items():
+        if len(asked) > 1:
+            pose_sets = _pose_sets(experiment, meshes, extent, query)
+            for pair, found in compare_all(pose_sets, asked, progress, budget=budget).items():
+                compared.setdefault(pair, Comparison()).add(found)
     for pair, found in compared.items():
         free = next((point for point in experiment.points if point.motion.response != "none"), None)
+        if not set(pair) <= set(names.get("collision", ())):
+            free = None
         if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
             if budget.spent:
                 budget.left_out.append(f"{pair[0]} and {pair[1]} in flight: not run, the time was spent")
@@ -171,31 +214,51 @@ def key_of(
 def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:
     """A method that computes events, on every motion of the experiment."""
     whole = Comparison()
-    for point, scene, frames in _motions(experiment, meshes, extent, by_tolerance=True):
+    points = [point for point in experiment.points if point.engine.query == "collision"]
+    for point, scene, frames in _motions(experiment, meshes, extent, points, by_tolerance=True):
         dt, tolerance = point.motion.dt, point.engine.tolerance
         whole.add(audit_events(scene, name, max(1, frames // budget.every), dt, tolerance, budget))
     return whole
 
 
-def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent) -> Iterator[PoseSet]:
-    """What the experiment's points fly through, each scene once; then the hard poses of every shape of a mesh."""
-    for point, scene, frames in _motions(experiment, meshes, extent):
-        yield flown(scene, frames, point.motion.dt)
-    random = {(point.scene.shape, point.scene.mesh): point for point in experiment.points if point.scene.bodies is None}
-    for (shape, _), point in random.items():
-        yield from hard_poses(shape, mesh_of(experiment, point, meshes), extent.every)
+def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent, query: Query) -> Iterator[PoseSet]:
+    """What the points of a query fly through, each scene once; then the hard poses of every shape of a mesh."""
+    points = [point for point in experiment.points if point.engine.query == query]
+    for point, scene, frames in _motions(experiment, meshes, extent, points, by_question=query != "collision"):
+        yield flown(scene, frames, point.motion.dt, _question(point))
+    random = {
+        (point.scene.shape, point.scene.mesh, _question(point)): point for point in points if point.scene.bodies is None
+    }
+    for (shape, _, question), point in random.items():
+        mesh = mesh_of(experiment, point, meshes)
+        yield from hard_questions(shape, mesh, extent.every, question, size=point.scene.size.mean)
+
+
+def _question(point: Point) -> Question:
+    engine = point.engine
+    if engine.query == "collision":
+        return COLLISION
+    return Question(engine.query, engine.within or 0.0, engine.tolerance)
 
 
 def _motions(
-    experiment: Experiment, meshes: Meshes, extent: Extent, *, by_tolerance: bool = False
+    experiment: Experiment,
+    meshes: Meshes,
+    extent: Extent,
+    points: Sequence[Point],
+    *,
+    by_tolerance: bool = False,
+    by_question: bool = False,
 ) -> Iterator[tuple[Point, Scene, int]]:
-    """Each motion of the experiment that has a pair and frames to look at: a point of it, its scene, and how many.
+    """Each motion of some points that has a pair and frames to look at: a point of it, its scene, and how many.
 
-    `by_tolerance` counts a motion again that is asked about with another tolerance.
+    `by_tolerance` and `by_question` count a motion again that is asked about with another tolerance, or another
+    question.
     """
     seen = set()
-    for point in experiment.points:
-        moved = repr((point.scene, point.motion.duration, point.motion.dt, by_tolerance and point.engine.tolerance))
+    for point in points:
+        asked = (by_tolerance and point.engine.tolerance, by_question and _question(point))
+        moved = repr((point.scene, point.motion.duration, point.motion.dt, *asked))
         if moved in seen:
             continue
         seen.add(moved)

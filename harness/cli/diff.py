@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.streams import speaks_unicode
+from harness.cli.width import say
 
 if TYPE_CHECKING:
     from harness.report.sweeps.difference import Difference, PointDifference
@@ -61,15 +62,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _say(found: Difference) -> None:
     for word, sweep in (("before", found.before), ("after", found.after)):
-        print(f"{word:6}  sweep {sweep.id}, {sweep.started}: {sweep.command}")
+        say(f"{word:6}  sweep {sweep.id}, {sweep.started}: {sweep.command}")
     for point in found.points:
         told = _told(point)
         if told:
-            print(f"{_place(point)}: {'; '.join(told)}")
+            say(f"{_place(point)}: {'; '.join(told)}")
     for verdict in found.verdicts:
-        print(f"{verdict.experiment}: {verdict.before} before, {verdict.after} now: {verdict.statement}")
+        say(f"{verdict.experiment}: {verdict.before} before, {verdict.after} now: {verdict.statement}")
     for line in _totals(found):
-        print(line)
+        say(line)
 
 
 def _totals(found: Difference) -> list[str]:

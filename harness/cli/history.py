@@ -13,6 +13,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.streams import speaks_unicode
+from harness.cli.width import say
 
 if TYPE_CHECKING:
     from harness.measure.statistics import Summary
@@ -40,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     for machine in found:
         _say(machine, arguments.metric, everything=arguments.all)
     if not found:
-        print(f"no run reports {arguments.metric}")
+        say(f"no run reports {arguments.metric}")
     return 0
 
 
@@ -50,27 +51,27 @@ def _say(machine: MachineHistory, metric: str, *, everything: bool) -> None:
     from harness.report.machine import machine_text
     from harness.report.quantity import plural, quantity
 
-    print(f"machine {machine.fingerprint}: {machine_text(machine.facts)}")
+    say(f"machine {machine.fingerprint}: {machine_text(machine.facts)}")
     earlier = None
     for sweep in machine.sweeps:
         drift = machine.drifts.get(sweep.id)
         parts = [f"commit {(sweep.commit or 'unknown')[:12]}", f"harness {sweep.version}"]
         parts += [f"drift of the machine since the first {drift:.3g}"] if drift is not None and earlier else []
-        print(f"  sweep {sweep.id}, {sweep.started}: {', '.join([*parts, *package_changes(sweep, earlier)])}")
+        say(f"  sweep {sweep.id}, {sweep.started}: {', '.join([*parts, *package_changes(sweep, earlier)])}")
         earlier = sweep
     unit = METRICS[metric].unit
     for point in machine.points:
         if point.steps or everything:
             course = ", ".join(f"{number}: {quantity(found.median, unit)}" for number, found in point.values.items())
-            print(f"{point.experiment or 'no longer listed'}{f' ({point.label})' if point.label else ''}: {course}")
+            say(f"{point.experiment or 'no longer listed'}{f' ({point.label})' if point.label else ''}: {course}")
         for step in point.steps:
-            print(
+            say(
                 f"  {_change(step.ratio, clock=METRICS[metric].clock)} from sweep {step.sweep.id} on; commit "
                 f"{(step.before.commit or 'unknown')[:12]} to {(step.sweep.commit or 'unknown')[:12]}"
             )
     long = sum(len(point.values) >= FEWEST_SWEEPS for point in machine.points)
     count = sum(len(point.steps) for point in machine.points)
-    print(
+    say(
         f"{plural(len(machine.points), 'point')} over {plural(len(machine.sweeps), 'sweep')}, {long} of them measured "
         f"by {FEWEST_SWEEPS} sweeps or more, as a step needs: {plural(count, 'step')}".replace("\u00a0", " ")
     )

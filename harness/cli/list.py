@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from harness.cli.width import say
 from harness.vocabulary import ALGORITHMS, QUERIES, Query, algorithms_of
 
 FOLDER = "experiments"
@@ -146,5 +147,5 @@ def _print(heading: str, rows: list[tuple[str, str]]) -> None:
     print(heading)
     width = max((len(name) for name, _ in rows), default=0)
     for name, text in rows or [("none", "")]:
-        print(f"  {name:{width}}  {text}".rstrip())
+        say(f"  {name:{width}}  {text}".rstrip())
     print()

@@ -9,6 +9,7 @@ from importlib import import_module
 
 from harness.cli.interruption import exit_code, heeding_signals
 from harness.cli.streams import reliable_streams
+from harness.cli.width import HelpFormatter
 from harness.errors import InputError
 
 COMMANDS = {
@@ -71,7 +72,7 @@ def _run(words: Sequence[str]) -> int:
         name = words[0]
         module = import_module(f"harness.cli.{name}")
         command = argparse.ArgumentParser(
-            prog=f"harness {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+            prog=f"harness {name}", description=module.__doc__, formatter_class=HelpFormatter
         )
         module.add_arguments(command)
         return int(module.run(command.parse_args(words[1:])))
@@ -101,7 +102,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="harness",
         description="A laboratory for collision detection: which pipeline, for my scene, at the accuracy I need?",
         epilog=f"commands:\n{lines}\n\n`harness COMMAND --help` says more.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=HelpFormatter,
         usage="harness COMMAND …",
     )
     parser.add_argument("command", nargs="?", choices=COMMANDS, help=argparse.SUPPRESS)

@@ -1,9 +1,9 @@
 """Make, inspect, simplify and weld mesh files.
 
-harness mesh make pumpkin --faces 1753
-harness mesh inspect meshes/*.ply
-harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
-harness mesh weld scan.stl --within 1e-6 --out scan-welded.ply
+  harness mesh make pumpkin --faces 1753
+  harness mesh inspect meshes/*.ply
+  harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
+  harness mesh weld scan.stl --within 1e-6 --out scan-welded.ply
 
 what is read of a file, told by the end of its name:
   .obj  v and f: any white space, # anywhere, lines continued by \\, indices from 1
@@ -28,6 +28,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness.cli.width import say
 from harness.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -156,11 +157,11 @@ def _write(path: Path, vertices: NDArray[np.float64], faces: NDArray[np.int32], 
         raise InputError(f"{path} is there already; --force overwrites it") from error
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}") from error
-    print(f"{path}: {len(faces)} faces, {len(mesh.vertices)} vertices, {len(mesh.hull.vertices)} of them on the hull")
+    say(f"{path}: {len(faces)} faces, {len(mesh.vertices)} vertices, {len(mesh.hull.vertices)} of them on the hull")
     for note in mesh.notes:
-        print(f"  note: {note}")
+        say(f"  note: {note}")
     if len(faces) % 2:
-        print("  note: a closed surface of triangles has an even number of faces; with an odd number one is missing")
+        say("  note: a closed surface of triangles has an even number of faces; with an odd number one is missing")
 
 
 def _facts(mesh: Mesh) -> dict[str, Any]:

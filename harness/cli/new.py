@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from harness.cli.width import say
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -34,8 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError([Problem("this exists already, and is left as it is", str(path))]) from None
     except OSError as error:
         raise InputError([Problem(f"this cannot be written: {error.strerror}", str(path))]) from None
-    print(f"wrote {path}")
-    print(f"check it with `harness validate {path}`, run it with `harness sweep {path}`, then `harness report`")
+    say(f"wrote {path}")
+    say(f"check it with `harness validate {path}`, run it with `harness sweep {path}`, then `harness report`")
     return 0
 
 

@@ -7,9 +7,13 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 from harness.errors import InputError
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.text import Text
+
     from harness.experiment.experiment import Experiment, Point
     from harness.methods.stages import Plan
 
@@ -66,9 +70,9 @@ def _show(experiment: Experiment, plans: Sequence[tuple[Point, Plan]]) -> None:
     console = Console(highlight=False)
     for plan, points in _alike(plans):
         title = f"{experiment.title}{_named(experiment, points)}"
-        console.print(Text(title, "bold"), soft_wrap=True)
+        _print(console, Text(title, "bold"))
         for warning in plan.warnings:
-            console.print(Text(f"  WARNING   {warning}", "bold red"), soft_wrap=True)
+            _print(console, Text(f"  WARNING   {warning}", "bold red"))
         table = Table.grid(padding=(0, 2, 0, 0))
         for stage in plan.stages:
             decision = "keeps" if stage.kept else "leaves out"
@@ -77,9 +81,16 @@ def _show(experiment: Experiment, plans: Sequence[tuple[Point, Plan]]) -> None:
                 shown = Text(decision, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
                 table.add_row("", *shown, Text(stage.why, style))
             else:
-                print(f"  {decision:10}  {stage.name:13}  {stage.why}")
+                say(f"  {decision:10}  {stage.name:13}  {stage.why}")
         if console.is_terminal:
             console.print(table)
+
+
+def _print(console: Console, text: Text) -> None:
+    if console.is_terminal:
+        console.print(text)
+    else:
+        say(text.plain)
 
 
 def _alike(plans: Sequence[tuple[Point, Plan]]) -> Iterable[tuple[Plan, list[Point]]]:

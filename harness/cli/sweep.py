@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 from harness.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -159,7 +160,17 @@ def _compare(
     lines = _survey(surveys, meshes, database, command, arguments) if surveys else []
     if not crosschecked:
         return lines
-    from harness.cli.crosscheck import SHOWN, SWEPT, backends_of, cross_check, event_methods, kept, key_of, reductions
+    from harness.cli.crosscheck import (
+        SHOWN,
+        SWEPT,
+        backends_of,
+        cross_check,
+        event_methods,
+        kept,
+        key_of,
+        pairs_of,
+        reductions,
+    )
     from harness.compare.budget import Budget
     from harness.compare.document import Known
     from harness.compare.event_audit import FRAMES
@@ -168,16 +179,16 @@ def _compare(
     for experiment in crosschecked:
         names, _ = backends_of(experiment)
         events = event_methods(experiment)
-        pairs = [(a, b) for place, a in enumerate(names) for b in names[place + 1 :]]
-        pairs += [(FRAMES, name) for name in events]
-        keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs}
+        keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs_of(names, events)}
         wanted = {pair for pair, key in keys.items() if key not in done}
         if not wanted:
             continue
-        asked = tuple(name for name in names if any(name in pair for pair in wanted))
+        involved = {name for pair in wanted for name in pair}
+        asked = {query: tuple(name for name in named if name in involved) for query, named in names.items()}
         left = tuple(name for name in events if (FRAMES, name) in wanted)
         if not arguments.quiet:
-            print(f"{experiment.name}: comparing {', '.join((*asked, *left))}", file=sys.stderr)
+            all_asked = dict.fromkeys(name for named in asked.values() for name in named)
+            print(f"{experiment.name}: comparing {', '.join((*all_asked, *left))}", file=sys.stderr)
         budget = Budget(_COMPARING)
         known: Known = {}
         for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=left):
@@ -279,8 +290,8 @@ def _print_what_would_be_done(
     else:
         time = f"about {duration_text(total + START_UP * len(backends))}, from earlier runs of {known} of them"
     for why in work.lacking.values():
-        print(f"points passed over: {why}")
-    print(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
+        say(f"points passed over: {why}")
+    say(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
 def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
@@ -297,20 +308,20 @@ def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
         _print_table(["experiment", "runs", "failed", "time"], rows)
     counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
     by_status = f" ({counts})" if counts else ""
-    print(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
+    say(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
     if summary.controls:
-        print(f"{summary.controls} of them done twice, as a control of the noise")
+        say(f"{summary.controls} of them done twice, as a control of the noise")
     failed_before = summary.kept.total() - summary.kept["ok"]
     if failed_before:
-        print(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
+        say(f"{failed_before} of those kept had failed; the report says why, --retry failed does them again")
     for why in summary.lacking:
-        print(f"points passed over: {why}")
+        say(f"points passed over: {why}")
     for experiment, statement in summary.broken:
-        print(f"{experiment}: expectation fails: {statement}")
+        say(f"{experiment}: expectation fails: {statement}")
     option = "" if arguments.db == DATABASE else f" --db {shlex.quote(arguments.db)}"
     if arguments.db.startswith("-"):  # else it would be taken for an option
         option = option.replace("--db ", "--db=", 1)
-    print(f"Now `harness report{option}` turns {arguments.db} into pages.")
+    say(f"Now `harness report{option}` turns {arguments.db} into pages.")
 
 
 def _print_table(titles: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -3,6 +3,10 @@
 Stepped runs report the hits that were answered, at the time of their frame; with `response: none`, the onset of each
 contact, at the first frame that sees it.
 
+With `engine.query: distance` or `tolerance` an event is that a pair comes near, with its gap (m) where that is asked;
+with `impact` that it begins to touch, at its exact time. --json has every answer in full: `near` (frame, time, bodies,
+gap, points) or `impacts` (time, bodies).
+
 With --json or --csv also the state of each body of a hit: its position (m), its velocity before and after (m/s), and
 the impulse that it received (kg m/s). With `response: none`, a wall turns the component along its normal, whatever
 other walls were met in that frame.
@@ -13,6 +17,7 @@ from __future__ import annotations
 import argparse
 
 from harness.cli.overrides import add_override_argument, overrides_of
+from harness.cli.width import say
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,11 +49,17 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.csv:
         sys.stdout.write(traced.to_csv())
         return 0
-    for time, (i, j), wall in zip(traced.times.tolist(), traced.bodies.tolist(), traced.walls.tolist(), strict=True):
-        near = " are near" if traced.near else ""
+    events = zip(traced.times.tolist(), traced.bodies.tolist(), traced.walls.tolist(), traced.gaps, strict=True)
+    for time, (i, j), wall, gap in events:
+        near = " are near" if traced.near else " begin to touch" if traced.query == "impact" else ""
+        near += "" if gap is None else f", {gap:.9g} m apart"
         what = f"bodies {i} and {j}{near}" if wall < 0 else f"body {i} and wall {WALLS[wall]}"
-        print(f"{time:.9g} s  {what}")
+        say(f"{time:.9g} s  {what}")
     counters = "  ".join(f"{name} {value}" for name, value in traced.counters.items())
-    events = "events" if traced.near else "hits"
-    print(f"{len(traced.times)} {events} in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
+    if traced.answers is not None and len(traced.answers.frames):
+        frames, gaps = len(set(traced.answers.frames.tolist())), traced.answers.gaps
+        least = f", the least gap {gaps.min():.9g} m" if traced.query == "distance" else ""
+        say(f"{len(gaps)} answers in {frames} frames: a pair that is near at a frame{least}")
+    kind = "events" if traced.near else "hits"
+    say(f"{len(traced.times)} {kind} in {traced.time:g} s; energy {traced.energy:.15g} J\n{counters}")
     return 0

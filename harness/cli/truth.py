@@ -10,6 +10,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from harness.cli.width import HelpFormatter
+
 DEFAULT_BUDGET = 7200.0
 
 _ASKED = """\
@@ -54,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "ask",
         help="ask engines about the cases",
         description=_ASKED,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=HelpFormatter,
     )
     ask.add_argument("folder", metavar="DIR", help="a folder that `make` wrote")
     ask.add_argument("--backends", metavar="NAMES", type=_words, default=["own"], help="such as own,fcl (default: own)")

@@ -6,17 +6,19 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from itertools import combinations
 
-from harness.arrays import Pairs
+from harness.compare.audit import audit_of
 from harness.compare.budget import Budget
 from harness.compare.group import Group, load
 from harness.compare.isolated import ANSWER_SECONDS, preload
 from harness.compare.outcome import Case, Comparison, Failure
-from harness.compare.pair_audit import PairAudit
 from harness.compare.poses import Pose, PoseSet
+from harness.compare.query_answers import Told, make_ready
+from harness.compare.question import COLLISION, Question
 from harness.compare.steadiness import unsteady
 from harness.compare.tally import NamePair, Tally
 from harness.compare.truths import Truths
 from harness.scene.scene import Scene
+from harness.vocabulary import MethodName
 
 MOST_FAILURES = 5
 """A backend that has crashed or hung so often at the poses of one scene is not asked about the rest of them."""
@@ -61,10 +63,12 @@ def compare_all(
     whole: Found = {pair: Comparison() for pair in combinations(names, 2)}
     for pose_set in pose_sets:
         scene = pose_set.scene
-        what = f"{len(scene.bodies)} bodies, shape {scene.shape}"
+        what = f"{_asked(pose_set)}{len(scene.bodies)} bodies, shape {scene.shape}"
         if budget.spent:
             budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.seconds:g} s were spent")
             continue
+        for name in names:
+            make_ready(MethodName.read(name, scene.shape, pose_set.question.query))
         progress(f"{', '.join(names)}: {what}")
         compared, hanging = _compare_at(pose_set, names, timeout, budget)
         for pair, found in compared.items():
@@ -82,15 +86,16 @@ class Asked:
     ----------
     scene : whose sizes and mesh the backends are loaded with
     names : of both
+    question : what they are asked
     """
 
-    def __init__(self, scene: Scene, names: NamePair) -> None:
-        self._scene, self._names = scene, names
+    def __init__(self, scene: Scene, names: NamePair, question: Question = COLLISION) -> None:
+        self._scene, self._names, self._question = scene, names, question
         self._processes = ExitStack()
 
     def __enter__(self) -> Asked:
         with ExitStack() as processes:
-            self._loaded = load(self._scene, self._names, processes, ANSWER_SECONDS)
+            self._loaded = load(self._scene, self._names, processes, ANSWER_SECONDS, self._question)
             self._processes = processes.pop_all()
         return self
 
@@ -99,7 +104,7 @@ class Asked:
 
     def disagreements(self, pose: Pose) -> list[Case]:
         """The real disagreements at a pose, and the errors that both share, each asked once."""
-        pose_set = PoseSet(self._scene, lambda held: (pose,), hard=True)
+        pose_set = PoseSet(self._scene, lambda held: (pose,), hard=True, question=self._question)
         found = Comparison()
         for group in self._loaded.groups:
             for one in _Questions(pose_set, group, Budget(), again=False).ask().values():
@@ -107,9 +112,9 @@ class Asked:
         return found.cases + found.shared
 
 
-def disagreements(scene: Scene, pose: Pose, names: NamePair) -> list[Case]:
+def disagreements(scene: Scene, pose: Pose, names: NamePair, question: Question = COLLISION) -> list[Case]:
     """The real disagreements of two backends at one pose, and the errors that they share, each asked once, afresh."""
-    with Asked(scene, names) as asked:
+    with Asked(scene, names, question) as asked:
         return asked.disagreements(pose)
 
 
@@ -117,15 +122,16 @@ def _compare_at(
     pose_set: PoseSet, names: Sequence[str], timeout: float, budget: Budget
 ) -> tuple[Found, frozenset[str]]:
     """What was found at these poses, and who hung and is not to be asked about others."""
-    shape = pose_set.scene.shape
-    whole: Found = {pair: Comparison([Tally(pair, shape)]) for pair in combinations(names, 2)}
+    shape, question = pose_set.scene.shape, pose_set.question
+    whole: Found = {pair: Comparison([Tally(pair, shape, query=question.query)]) for pair in combinations(names, 2)}
     with ExitStack() as processes:
-        loaded = load(pose_set.scene, names, processes, timeout)
+        loaded = load(pose_set.scene, names, processes, timeout, question)
         compared = {pair for group in loaded.groups for pair in group.pairs}
         for pair, found in whole.items():
             for name in [name for name in pair if name in loaded.unusable and pair not in compared][:1]:
-                line = f"{pair[0]} and {pair[1]} are not comparable on shape {shape}: {name}: {loaded.unusable[name]}"
-                found.unsupported.append(line)
+                asked = "" if question.query == "collision" else f" asked {question.query}"
+                line = f"{pair[0]} and {pair[1]} are not comparable on shape {shape}{asked}"
+                found.unsupported.append(f"{line}: {name}: {loaded.unusable[name]}")
         for name, claim in loaded.claims.items():
             pair = next(pair for pair in whole if name in pair)
             whole[pair].failures.append(Failure(pair, name, "loading", 0, claim, kind="claim"))
@@ -141,15 +147,17 @@ class _Questions:
     def __init__(self, pose_set: PoseSet, group: Group, budget: Budget, *, again: bool) -> None:
         self._group, self._budget, self._again = group, budget, again
         self._poses = tuple(pose_set.poses(group.scene))
-        self._hard = pose_set.hard
+        self._hard, self._asked_before = pose_set.hard, _asked(pose_set)
         facts = {name: asked.facts for name, asked in group.asked.items()}
         self._audits = {
-            pair: PairAudit(pair, group.scene, (facts[pair[0]], facts[pair[1]]), flown=not pose_set.hard)
+            pair: audit_of(
+                pair, group.scene, (facts[pair[0]], facts[pair[1]]), pose_set.question, flown=not pose_set.hard
+            )
             for pair in group.pairs
         }
         # in their order, those that some pair needs
         self._names = [name for name in group.asked if any(name in pair for pair in group.pairs)]
-        self._answers: dict[str, dict[int, Pairs]] = {name: {} for name in self._names}
+        self._answers: dict[str, dict[int, Told]] = {name: {} for name in self._names}
         self._failures: dict[str, list[Failure]] = {name: [] for name in self._names}
         self._exhausted: dict[str, str] = {}
 
@@ -164,7 +172,8 @@ class _Questions:
         if self._budget.spent and place < len(self._poses):
             scene = self._group.scene
             self._budget.left_out.append(
-                f"{len(scene.bodies)} bodies, shape {scene.shape}{_sizes(scene)}: {len(self._poses) - place} of "
+                f"{self._asked_before}{len(scene.bodies)} bodies, shape {scene.shape}{_sizes(scene)}: "
+                f"{len(self._poses) - place} of "
                 f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.seconds:g} s were spent"
             )
         if self._again:
@@ -180,7 +189,7 @@ class _Questions:
         for name in self._names:
             if not any(name in pair for pair in pairs):
                 continue
-            answer = self._group.asked[name].pairs(pose)
+            answer = self._group.asked[name].told(pose)
             if isinstance(answer, str):
                 self._failures[name].append(Failure(self._pair_of(name), name, pose.name, place + 1, answer))
                 if len(self._failures[name]) >= MOST_FAILURES:
@@ -223,6 +232,12 @@ class _Questions:
                 if name in pair:
                     found[pair].unsupported.append(line)
         return found
+
+
+def _asked(pose_set: PoseSet) -> str:
+    """Of a line about these poses, what is asked there; nothing where it is whether bodies touch."""
+    question = pose_set.question
+    return "" if question.query == "collision" else f"{question.text}, "
 
 
 def _sizes(scene: Scene) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 
 from harness.arrays import Floats
 from harness.compare.outcome import Case
+from harness.compare.poses import Frame
 from harness.compare.surfaces import turned
 from harness.scene.scene import Scene
 
@@ -18,15 +19,16 @@ _CORNERS = 64  # of the polygon that stands for a sphere
 def cross_section(case: Case) -> list[list[Segment]]:
     """What a plane cuts out of both bodies of a case, each as segments in the plane.
 
-    The first axis of the plane points from the first body to the second, whose centres lie on it at -d/2 and d/2.
+    The first axis of the plane points from the first body to the second, whose centres lie on it at -d/2 and d/2. Of a
+    frame the moment is shown that was judged.
     """
     i, j = case.bodies
-    positions = case.pose.positions[[i, j]]
+    pose = case.pose.at(case.scene, case.moment) if isinstance(case.pose, Frame) else case.pose
+    positions = pose.positions[[i, j]]
     across, up = _axes(case, positions)
     middle = positions.mean(axis=0)
     return [
-        _cut(case.scene, body, case.pose.positions[body] - middle, case.pose.quaternions[body], across, up)
-        for body in (i, j)
+        _cut(case.scene, body, pose.positions[body] - middle, pose.quaternions[body], across, up) for body in (i, j)
     ]
 
 

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from math import isinf
 from typing import Any, TypeAlias
 
 from harness.compare.cross_section import cross_section
 from harness.compare.minimise import minimise
 from harness.compare.outcome import Case, Comparison, Failure
+from harness.compare.question import Question
 from harness.compare.reproduction import text_of
 from harness.compare.tally import Approximation, Counts, GapHistogram
-from harness.vocabulary import MethodName
+from harness.vocabulary import NEAR_QUERIES, MethodName
 
-Known: TypeAlias = dict[tuple[str, str, tuple[int, int], bytes], Case]
+Known: TypeAlias = dict[tuple[str, Question, str, tuple[int, int], bytes], Case]
 """The smaller cases, by who is wrong about which bodies at which pose."""
 
 
@@ -62,7 +64,7 @@ def reduced(found: Comparison, mesh_name: dict[int, str], most: int, known: Know
         now = tried[case.wrong] <= most and MethodName.read(case.wrong, case.scene.shape).stepped
         small = None
         if now:
-            place = (case.wrong, case.scene.shape, case.bodies, case.pose.positions.tobytes())
+            place = (case.wrong, case.question, case.scene.shape, case.bodies, case.pose.positions.tobytes())
             small = minimise(case, known.get(place))
             if small is not None:
                 known.setdefault(place, small)
@@ -109,7 +111,18 @@ def case_row(row: Reduced, file: str | None) -> dict[str, Any]:
         "file": file,
         "minimised_to": None if row.small is None else len(row.small.scene.bodies),
         "depends_on_order": row.tried and row.small is None,
+        **_asked(case),
     }
+
+
+def _asked(case: Case) -> dict[str, Any]:
+    """What was asked, of queries other than collision; what was told is None of a pair that was not reported."""
+    question = case.question
+    if question.query == "collision":
+        return {}
+    within = {"within": question.within} if question.query in NEAR_QUERIES else {"moment": case.moment}
+    told = None if case.told is None or isinf(case.told) else case.told
+    return {"query": question.query, **within, "tolerance": question.tolerance, "told": told}
 
 
 def failure_row(failure: Failure) -> dict[str, Any]:
@@ -134,6 +147,7 @@ def shown_case(row: Reduced) -> dict[str, Any]:
         "bodies": list(best.bodies),
         "gap": best.judgement.gap,
         "certificate": best.judgement.certificate | {"touching": best.judgement.touching},
+        **_asked(best),
     }  # fmt: skip
     return case_row(row, None) | {
         "sizes": [float(sizes[i]), float(sizes[j])],
@@ -145,7 +159,9 @@ def shown_case(row: Reduced) -> dict[str, Any]:
 
 
 def _counts(counts: Counts) -> dict[str, Any]:
-    return {**asdict(counts), "backends": list(counts.backends)}
+    """The query is named where it is not collision."""
+    row = {**asdict(counts), "backends": list(counts.backends)}
+    return row if counts.query != "collision" else {key: value for key, value in row.items() if key != "query"}
 
 
 def _approximation(one: Approximation) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The exact gap of the two bodies of a scene at a pose, and whether it is at most a length."""
+"""The exact gap of two bodies of a scene at a pose, and whether it is at most a length."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from harness.compare.certificate import Certificate
 from harness.compare.exact import Placed
 from harness.compare.exact_distance import DistanceCertificate, hull_distance, root, surface_distance
 from harness.compare.judge import judge
@@ -19,21 +20,23 @@ class ExactGap:
 
     Parameters
     ----------
-    scene : of two bodies, with the hulls that count
+    scene : with the hulls that count
     pose : Pose
+    bodies : which two
 
     Attributes
     ----------
     value : m, rounded once or twice
     """
 
-    def __init__(self, scene: Scene, pose: Pose) -> None:
-        self._scene, self._pose = scene, pose
+    def __init__(self, scene: Scene, pose: Pose, bodies: tuple[int, int] = (0, 1)) -> None:
+        self._scene, self._pose, self._bodies = scene, pose, bodies
         self._certificate: DistanceCertificate | None = None
         if scene.shape == "sphere":
-            self.value = max(0.0, judge(scene, 0, 1, pose.positions, pose.quaternions).gap)
+            judged = judge(scene, *bodies, pose.positions, pose.quaternions)
+            self.value, self._of_spheres = max(0.0, judged.gap), judged.certificate
             return
-        (first, placed), (second, other) = self._placed(0), self._placed(1)
+        (first, placed), (second, other) = map(self._placed, bodies)
         if scene.shape == "hull":
             self._certificate = hull_distance(placed, other)
         else:
@@ -43,7 +46,8 @@ class ExactGap:
     def at_most(self, length: float) -> bool | None:
         """Whether the gap is at most so much, m, exactly; None where the bounds do not decide it."""
         if self._certificate is None:
-            positions, sizes = self._pose.positions.tolist(), self._scene.bodies.sizes.tolist()
+            chosen = list(self._bodies)
+            positions, sizes = self._pose.positions[chosen].tolist(), self._scene.bodies.sizes[chosen].tolist()
             squared = sum(((Fraction(b) - Fraction(a)) ** 2 for a, b in zip(*positions, strict=True)), Fraction(0))
             reach = (Fraction(sizes[0]) + Fraction(sizes[1])) / 2 + Fraction(length)
             return squared <= reach * reach
@@ -67,12 +71,31 @@ class ExactGap:
         """
         if self._certificate is None:
             return
-        (first, placed), (second, other) = self._placed(0), self._placed(1)
+        (first, placed), (second, other) = map(self._placed, self._bodies)
         if self._scene.shape == "hull":
             whole, other_whole = (np.arange(len(solid.vertices))[None] for solid in (first, second))
             self._certificate.check(placed, whole, other, other_whole)
         else:
             self._certificate.check(placed, first.faces, other, second.faces)
+
+    @property
+    def certificate(self) -> Certificate:
+        """The proof, in the form that JSON holds: vertices with their weights in the nearest points, and the bounds."""
+        if self._certificate is None:
+            return self._of_spheres
+        proven = self._certificate
+        first, second = (
+            [[vertex, str(Fraction(weight, sum(part for _, part in side)))] for vertex, weight in side]
+            for side in proven.weights
+        )
+        return {
+            "kind": "nearest points and separating planes",
+            "first": first,
+            "second": second,
+            "planes": len(proven.planes),
+            "lower": root(proven.lower),
+            "upper": root(proven.upper),
+        }
 
     def _placed(self, body: int) -> tuple[Surface, Placed]:
         solid = self._scene.solid_of(float(self._scene.bodies.sizes[body]))

@@ -15,6 +15,7 @@ import numpy as np
 
 from harness.arrays import Floats
 from harness.compare.isolated import Facts, HangingError, Isolated, UnusableError
+from harness.compare.question import COLLISION, Question
 from harness.compare.tally import NamePair
 from harness.scene.hull import Hull
 from harness.scene.scene import Scene
@@ -57,7 +58,9 @@ class Loaded:
     hanging: frozenset[str]
 
 
-def load(scene: Scene, names: Sequence[str], processes: ExitStack, timeout: float) -> Loaded:
+def load(
+    scene: Scene, names: Sequence[str], processes: ExitStack, timeout: float, question: Question = COLLISION
+) -> Loaded:
     """Every method with the scene; and with the hulls of another, where it is held against those."""
     asked: dict[str, Isolated] = {}
     unusable: dict[str, str] = {}
@@ -66,7 +69,7 @@ def load(scene: Scene, names: Sequence[str], processes: ExitStack, timeout: floa
 
     def enter(name: str, held: Scene) -> Isolated | None:
         try:
-            return processes.enter_context(Isolated(name, held, timeout))
+            return processes.enter_context(Isolated(name, held, timeout, question))
         except UnusableError as error:
             unusable[name] = str(error)
             if isinstance(error, HangingError):

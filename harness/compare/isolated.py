@@ -27,7 +27,9 @@ from harness.backends.protocol import (
 )
 from harness.child_process import Channel, Child
 from harness.compare.own_gaps import OWN, OwnGaps
-from harness.compare.poses import Pose
+from harness.compare.poses import Frame, Pose
+from harness.compare.query_answers import QueryAnswers, Told
+from harness.compare.question import COLLISION, Question
 from harness.errors import InputError
 from harness.methods.at_poses import AtPoses
 from harness.scene.hull import Hull
@@ -113,10 +115,11 @@ class Isolated:
     name : of what answers; `_create` makes of it what is asked, and nothing else looks into it
     scene : Scene
     timeout : s for an answer
+    question : what it is asked at every pose
 
     Attributes
     ----------
-    name : as given
+    name, question : as given
     facts : what it declares of itself, once entered
 
     Raises
@@ -125,8 +128,11 @@ class Isolated:
         On entering, if it cannot load the scene.
     """
 
-    def __init__(self, name: str, scene: Scene, timeout: float = ANSWER_SECONDS) -> None:
-        self.name, self._scene, self._timeout = name, scene, timeout
+    def __init__(
+        self, name: str, scene: Scene, timeout: float = ANSWER_SECONDS, question: Question = COLLISION
+    ) -> None:
+        self.name, self.question = name, question
+        self._scene, self._timeout = scene, timeout
         self._child: Child | None = None
 
     def __enter__(self) -> Isolated:
@@ -142,6 +148,17 @@ class Isolated:
         """The touching pairs at a pose, or how the backend failed at it; after a failure it is started afresh."""
         found: Pairs | str = self._answer((pose.positions, pose.quaternions))
         return found
+
+    def told(self, pose: Pose) -> Told | str:
+        """What it tells of each pair at a pose, or in a frame, or how it failed there, as `pairs`.
+
+        A frame goes on where the last one ended, if it is the next. Of collision the number is 0.
+        """
+        if self.question.query == "collision":
+            found = self.pairs(pose)
+            return found if isinstance(found, str) else dict.fromkeys(map(tuple, found.tolist()), 0.0)
+        answer: Told | str = self._answer(pose)
+        return answer
 
     def near(self, question: NearQuestion) -> float | str:
         """The gap that it tells of a pair, m; 0 where it says that they are near, and inf that they are not."""
@@ -177,7 +194,7 @@ class Isolated:
         return None
 
     def _start(self) -> Facts:
-        self._child = Child.fork(partial(_serve, self.name, self._scene))
+        self._child = Child.fork(partial(_serve, self.name, self._scene, self.question))
         try:
             answer = self._child.receive(_LOADING * self._timeout)
             if answer == "timeout":
@@ -208,32 +225,65 @@ def preload(name: str) -> None:
             registry.create(backend)
 
 
-def _create(name: str, shape: Shape) -> Backend:
+def _create(name: str, shape: Shape, question: Question) -> Backend | QueryAnswers:
     """What stands behind a name: a method of this program ("fcl/grid"), or a backend's own pipeline ("pybullet")."""
     if name == OWN:
         return OwnGaps()
+    if question.query != "collision":
+        return QueryAnswers(MethodName.read(name, shape, question.query), question)
     return AtPoses(MethodName.read(name, shape)) if "/" in name else registry.create(name)
 
 
-def _serve(name: str, scene: Scene, channel: Channel) -> None:
+def _serve(name: str, scene: Scene, asked: Question, channel: Channel) -> None:
     """The process of the backend: load, send the facts, then answer until the parent closes its end."""
     try:
-        backend = _create(name, scene.shape)
-        if scene.shape not in backend.shapes:
+        made = _create(name, scene.shape, asked)
+        if scene.shape not in made.shapes:
             raise InputError(f"it has no shape {scene.shape}")
-        backend.load(scene)
-        facts = Facts(
-            float(backend.tolerance(scene.shape)),
-            approximations(backend).get(scene.shape),
-            own_hulls(backend) if scene.shape == "hull" else {},
-            own_hulls_tolerance(backend),
-            contained_is_touching(backend, scene.shape),
-            queries(backend),
-        )
+        made.load(scene)
+        facts = _facts(made, scene)
     except Exception as error:  # a plugin may fail in any way
         channel.send(pickle.dumps(str(error) if isinstance(error, InputError) else _told(error)))
         return
     channel.send(pickle.dumps(facts))
+    if isinstance(made, QueryAnswers):
+        _answer_queries(made, channel)
+    else:
+        _answer_all(name, made, channel)
+
+
+def _facts(made: Backend | QueryAnswers, scene: Scene) -> Facts:
+    tolerance = float(made.tolerance(scene.shape))
+    if not isinstance(made, QueryAnswers):
+        backend = made
+    elif made.library is None:
+        return Facts(tolerance)
+    else:
+        backend = made.library
+    return Facts(
+        tolerance,
+        approximations(backend).get(scene.shape),
+        own_hulls(backend) if scene.shape == "hull" else {},
+        own_hulls_tolerance(backend),
+        contained_is_touching(backend, scene.shape),
+        queries(backend),
+    )
+
+
+def _answer_queries(answers: QueryAnswers, channel: Channel) -> None:
+    while (asked := channel.receive()) is not None:
+        pose: Pose | Frame = pickle.loads(asked)
+        answer: Told | str
+        try:
+            answer = answers.told(pose)
+        except ContractError as error:
+            answer = str(error)
+        except Exception as error:
+            answer = _told(error)
+        channel.send(pickle.dumps(answer))
+
+
+def _answer_all(name: str, backend: Backend, channel: Channel) -> None:
     # what is our own needs no read-only view, for which its kernels would be compiled anew
     guarded = (lambda poses: poses) if isinstance(backend, AtPoses | OwnGaps) else read_only
     while (asked := channel.receive()) is not None:

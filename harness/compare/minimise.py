@@ -13,7 +13,7 @@ from harness.arrays import Floats
 from harness.compare.comparison import Asked, disagreements
 from harness.compare.isolated import UnusableError
 from harness.compare.outcome import Case
-from harness.compare.poses import Pose
+from harness.compare.poses import Frame, Pose
 from harness.scene.bodies import Bodies
 from harness.scene.scene import Scene
 
@@ -22,7 +22,7 @@ _DIGITS = (0, 1, 2, 3, 4, 6, 9, 12)
 
 
 def minimise(case: Case, known: Case | None = None) -> Case | None:
-    """The same backend wrong in a scene of its own, with its bodies at rest at their poses.
+    """The same backend wrong in a scene of its own, with its bodies at rest at their poses, or in a frame of their own.
 
     Bodies are taken away, first by halves, then one by one, as long as the backend is still wrong about any that are
     left; then coordinates, orientations and sizes are rounded as far as that goes.
@@ -39,7 +39,7 @@ def minimise(case: Case, known: Case | None = None) -> Case | None:
     """
     if known is not None and (same := _wrong_again(case, replace(known.scene, hulls={}))) is not None:
         return same
-    small = _wrong_again(case, _at_rest(case.scene, case.pose, list(case.bodies)))
+    small = _wrong_again(case, _alone(case.scene, case.pose, list(case.bodies)))
     if small is None:
         small = _with_fewer_bodies(case)
     return None if small is None else _rounded(case, small)
@@ -54,7 +54,7 @@ def _rounded(case: Case, small: Case) -> Case:
 
 def _with_fewer_bodies(case: Case) -> Case | None:
     chosen = list(range(len(case.scene.bodies)))
-    small = _wrong_again(case, _at_rest(case.scene, case.pose, chosen))
+    small = _wrong_again(case, _alone(case.scene, case.pose, chosen))
     if small is None:
         return None
     length = len(chosen) // 2
@@ -62,7 +62,7 @@ def _with_fewer_bodies(case: Case) -> Case | None:
         before, place = len(chosen), 0
         while place < len(chosen):
             rest = chosen[:place] + chosen[place + length :]
-            found = _wrong_again(case, _at_rest(case.scene, case.pose, rest)) if len(rest) > 1 else None
+            found = _wrong_again(case, _alone(case.scene, case.pose, rest)) if len(rest) > 1 else None
             if found is None:
                 place += length
             else:
@@ -96,9 +96,9 @@ class _Again:
         try:
             if not np.array_equal(self._sizes, bodies.sizes):
                 self._loaded.close()
-                self._asked = self._loaded.enter_context(Asked(scene, self._case.backends))
+                self._asked = self._loaded.enter_context(Asked(scene, self._case.backends, self._case.question))
                 self._sizes = bodies.sizes.copy()
-            found = _same(self._case, self._asked.disagreements(Pose("at rest", bodies.positions, bodies.quaternions)))
+            found = _same(self._case, self._asked.disagreements(_pose_of(self._case, scene)))
         except UnusableError:
             return None
         return None if found is None else replace(found, scene=replace(found.scene, bodies=bodies))
@@ -124,7 +124,7 @@ class _Rounding:
         if not self._try(quaternions=upright):
             for body in range(len(bodies)):
                 self._try(quaternions=np.where(np.arange(len(bodies))[:, None] == body, upright, self._turns))
-        for name in ("sizes", "quaternions", "positions"):
+        for name in ("sizes", "quaternions", "velocities", "spins", "positions"):
             self._round_all(name)
         for body in range(len(bodies)):
             for axis in range(3):
@@ -140,8 +140,11 @@ class _Rounding:
         return self._bodies.quaternions
 
     def _round_all(self, name: str) -> None:
+        values: Floats = getattr(self._bodies, name)
+        if not values.any():
+            return  # of bodies at rest
         for digits in _DIGITS:
-            if self._try(**{name: getattr(self._bodies, name).round(digits)}):
+            if self._try(**{name: values.round(digits)}):
                 return
 
     def _round_one(self, body: int, axis: int) -> None:
@@ -169,9 +172,8 @@ class _Rounding:
 
 def _wrong_again(case: Case, scene: Scene) -> Case | None:
     """The first verdict in this scene that is wrong in the same way, if there is one."""
-    pose = Pose("at rest", scene.bodies.positions, scene.bodies.quaternions)
     try:
-        found = disagreements(scene, pose, case.backends)
+        found = disagreements(scene, _pose_of(case, scene), case.backends, case.question)
     except UnusableError:
         return None
     return _same(case, found)
@@ -181,8 +183,20 @@ def _same(case: Case, found: Sequence[Case]) -> Case | None:
     return next((one for one in found if one.wrong == case.wrong), None)
 
 
-def _at_rest(scene: Scene, pose: Pose, chosen: list[int]) -> Scene:
-    sizes, masses = scene.bodies.sizes[chosen], scene.bodies.masses[chosen]
-    still = np.zeros((len(chosen), 3))
-    bodies = Bodies(pose.positions[chosen], still, pose.quaternions[chosen], still, sizes, masses)
-    return replace(scene, bodies=bodies, hulls={})
+def _alone(scene: Scene, pose: Pose, chosen: list[int]) -> Scene:
+    """Some of the bodies: at rest at their poses, or moving as they do in the frame."""
+    bodies, still = scene.bodies, np.zeros((len(chosen), 3))
+    velocities, spins = (pose.velocities[chosen], pose.spins[chosen]) if isinstance(pose, Frame) else (still, still)
+    alone = Bodies(
+        pose.positions[chosen], velocities, pose.quaternions[chosen], spins, bodies.sizes[chosen], bodies.masses[chosen]
+    )
+    return replace(scene, bodies=alone, hulls={})
+
+
+def _pose_of(case: Case, scene: Scene) -> Pose:
+    """What is asked about a scene of few bodies: a frame as long as the one of the case, or the bodies at rest."""
+    bodies = scene.bodies
+    if isinstance(case.pose, Frame):
+        motion = bodies.velocities, bodies.spins, case.pose.duration
+        return Frame("frame 1", bodies.positions, bodies.quaternions, *motion, number=1)
+    return Pose("at rest", bodies.positions, bodies.quaternions)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from harness.compare.certificate import Judgement
 from harness.compare.free_run_pair import FreeRunPair
 from harness.compare.poses import Pose
+from harness.compare.question import COLLISION, Question
 from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally, merge
 from harness.scene.scene import Scene
 
@@ -23,6 +24,10 @@ class Case:
     judgement : what is true, with the proof
     scene, pose : where; the hulls of the scene are those both backends were held against
     query_index : which query of this scene it was, from 1
+    question : what was asked
+    told : what it said: a gap (m), or seconds after the start of the frame; inf where it does not report the pair. None
+        where it was asked for no number
+    moment : s after the start of the frame, of the judgement; 0 where poses do not move
     """
 
     backends: NamePair
@@ -32,6 +37,9 @@ class Case:
     scene: Scene
     pose: Pose
     query_index: int
+    question: Question = COLLISION
+    told: float | None = None
+    moment: float = 0.0
 
     @property
     def both_wrong(self) -> bool:

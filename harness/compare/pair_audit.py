@@ -6,24 +6,27 @@ one pair a frame whose bounding spheres touch (of meshes, whose judgement takes 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from harness.arrays import Pairs
 from harness.compare.certificate import Judgement
 from harness.compare.group import LARGEST_TOLERANCE
 from harness.compare.isolated import Facts
 from harness.compare.outcome import Case, Comparison
 from harness.compare.poses import Pose
+from harness.compare.query_answers import Told
+from harness.compare.question import COLLISION, Question
 from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally
 from harness.compare.truths import Pair, Truths
 from harness.scene.scene import Scene
 
 Kind = Literal["undecided", "containment", "approximation", "real"]
 
+KINDS: tuple[Kind, ...] = ("undecided", "containment", "approximation", "real")
+"""The worst last."""
 _HARD_CHECKED, _MESHES_CHECKED = 4, 10
 
 # A verdict stands on rounded coordinates, whatever the backend: the sum of a position and a vertex, on both sides.
@@ -38,6 +41,7 @@ class PairAudit:
     names : of both
     scene : with the hulls that both are held against
     facts : what each declares of itself
+    question : whether pairs touch
     flown : whether the bodies fly; else they are put where verdicts are hard
 
     Attributes
@@ -45,7 +49,15 @@ class PairAudit:
     found : what has been found so far
     """
 
-    def __init__(self, names: NamePair, scene: Scene, facts: tuple[Facts, Facts], *, flown: bool) -> None:
+    def __init__(
+        self,
+        names: NamePair,
+        scene: Scene,
+        facts: tuple[Facts, Facts],
+        question: Question = COLLISION,
+        *,
+        flown: bool,
+    ) -> None:
         self._names, self._scene, self._facts, self._flown = names, scene, facts, flown
         self._tally, self._gaps = Tally(names, scene.shape), GapHistogram(names, scene.shape)
         self._checked = CheckedAgreement(names, scene.shape)
@@ -57,18 +69,11 @@ class PairAudit:
             approximations=[self._approximation] if self._approximation else [],
         )
 
-    def add(self, truths_there: Truths, query_index: int, answers: Sequence[Pairs]) -> None:
-        """Count the verdicts of both at a pose.
-
-        Parameters
-        ----------
-        truths_there : what is true at the pose
-        query_index : which query of this scene it was, from 1
-        answers : the touching pairs, as each has them
-        """
+    def add(self, truths_there: Truths, query_index: int, answers: tuple[Told, Told]) -> None:
+        """Count the verdicts of both at a pose; documented as `harness.compare.audit.Audit.add`."""
         count = len(self._scene.bodies)
         pairs = count * (count - 1) // 2
-        first, second = (_as_set(answer) for answer in answers)
+        first, second = (set(answer) for answer in answers)
         differing = sorted(first ^ second)
         self._tally.poses += 1
         self._tally.verdicts += pairs
@@ -92,8 +97,7 @@ class PairAudit:
 
     def _check_agreement(self, truths: Truths, query_index: int, first: set[Pair], second: set[Pair]) -> None:
         """Judge one of the verdicts that both agree on, at every n-th query."""
-        every = _HARD_CHECKED if not self._flown else _MESHES_CHECKED if self._scene.shape == "mesh" else 1
-        pair = _near_pair(self._scene, truths.pose, query_index) if (query_index - 1) % every == 0 else None
+        pair = checked_pair(self._scene, truths.pose, query_index, flown=self._flown)
         if pair is None or (pair in first) != (pair in second):
             return
         self._checked.verdicts += 1
@@ -112,7 +116,7 @@ class PairAudit:
     def _kind(self, truths: Truths, pair: Pair, wrong: int) -> Kind:
         """What explains that the backend at a place in `names` is wrong; "real" if nothing does."""
         truth = truths.judgement(pair)
-        band = _band(self._scene, self._facts[wrong], self._facts[1 - wrong], truths.pose, pair)
+        band = band_of(self._scene, self._facts[wrong], self._facts[1 - wrong], truths.pose, pair)
         if abs(truth.gap) <= band:
             return "undecided"
         if truth.contained and self._facts[wrong].solid:
@@ -143,9 +147,14 @@ def _count_approximation(
     counts.misses += sum(truth.touching and pair not in reported for pair, truth in truths.items())
 
 
-def _near_pair(scene: Scene, pose: Pose, query_index: int) -> Pair | None:
-    """One of the pairs whose bounding spheres touch, another each time."""
-    radii = scene.bodies.radii
+def checked_pair(scene: Scene, pose: Pose, query_index: int, *, flown: bool, within: float = 0.0) -> Pair | None:
+    """One of the pairs whose bounding spheres are within a gap (m), another each time; None at most of the queries."""
+    every = _HARD_CHECKED if not flown else _MESHES_CHECKED if scene.shape == "mesh" else 1
+    return _near_pair(scene, pose, query_index, within) if (query_index - 1) % every == 0 else None
+
+
+def _near_pair(scene: Scene, pose: Pose, query_index: int, within: float) -> Pair | None:
+    radii = scene.bodies.radii + 0.5 * within
     pairs = cKDTree(pose.positions).query_pairs(2 * float(radii.max()), output_type="ndarray")
     apart = np.linalg.norm(pose.positions[pairs[:, 0]] - pose.positions[pairs[:, 1]], axis=1)
     near = pairs[apart <= radii[pairs].sum(axis=1)]
@@ -156,11 +165,19 @@ def _near_pair(scene: Scene, pose: Pose, query_index: int) -> Pair | None:
     return i, j
 
 
-def _as_set(pairs: Pairs) -> set[Pair]:
-    return {(i, j) for i, j in pairs.tolist()}
+def differing_verdict(
+    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told
+) -> Pair | None:
+    """The first pair that only one answer has, and that is farther from touching than the tolerance."""
+    truths = Truths(scene, pose)
+    for pair in sorted(set(answer) ^ set(other)):
+        tolerance = min(facts.tolerance, LARGEST_TOLERANCE) * float(scene.bodies.sizes[list(pair)].max())
+        if abs(truths.judgement(pair).gap) > tolerance:
+            return pair
+    return None
 
 
-def _band(scene: Scene, wrong: Facts, other: Facts, pose: Pose, bodies: Pair) -> float:
+def band_of(scene: Scene, wrong: Facts, other: Facts, pose: Pose, bodies: Pair) -> float:
     """m; on a nearer contact the backend that is wrong need not be right. What the other declares excuses nothing."""
     trusted = bool(wrong.hulls) != bool(other.hulls)
     return band(scene, wrong.hulls_tolerance if trusted and wrong.hulls else wrong.tolerance, pose, bodies)

@@ -7,12 +7,14 @@ import shutil
 from pathlib import Path
 
 from harness.compare.outcome import Case
-from harness.vocabulary import MethodName
+from harness.compare.poses import Frame
+from harness.compare.question import Question
+from harness.vocabulary import NEAR_QUERIES, MethodName
 from harness.whole_file import write_whole
 
 
 def save(case: Case, folder: Path, name: str, mesh: Path | None, script: str | None = None) -> Path:
-    """Write a case whose bodies are at rest at their poses.
+    """Write a case whose bodies are alone: at rest at their poses, or moving through one frame.
 
     Parameters
     ----------
@@ -38,32 +40,68 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None, script: str | N
 
 
 def text_of(case: Case, mesh: str | None) -> str:
-    """The experiment: its bodies rest, so that `harness compare` asks of this pose alone and `harness view` shows it.
+    """The experiment: `harness compare` asks the same of this pose, or this frame, alone, and `harness view` shows it.
 
     Parameters
     ----------
     case : Case
     mesh : name of a mesh file that will lie beside the experiment
     """
-    scene, (i, j) = case.scene, case.bodies
-    methods = [MethodName.read(name, scene.shape) for name in case.backends]
+    scene, (i, j), asked = case.scene, case.bodies, case.question
+    methods = [MethodName.read(name, scene.shape, asked.query) for name in case.backends]
     leaves = {leaf: [getattr(method, leaf) for method in methods] for leaf in ("backend", "algorithm")}
-    rows = zip(
-        scene.bodies.positions.tolist(), scene.bodies.quaternions.tolist(), scene.bodies.sizes.tolist(), strict=True
-    )
-    bodies = [{"position": at, "velocity": [0, 0, 0], "orientation": turned, "size": size} for at, turned, size in rows]
-    declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": bodies}
+    declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": _rows(case)}
     if mesh is not None and scene.shape != "sphere":
         declared["mesh"] = mesh
     verb = "are" if case.both_wrong else "is"
-    state = "overlap" if case.judgement.touching else "do not touch"
+    motion: dict[str, object] = {"duration": 0, "response": "none"}
+    if isinstance(case.pose, Frame):
+        motion = {"duration": case.pose.duration, "dt": case.pose.duration, "response": "none"}
     lines = {
         "title": f"{case.wrong} {verb} wrong about bodies {i} and {j}",
-        "question": f"Do they touch? Exactly, they {state}; their gap is {case.judgement.gap:.6g} m.",
+        "question": question_of(case),
         "scene": declared,
-        "motion": {"duration": 0, "response": "none"},
+        "motion": motion,
+        **({} if asked.query == "collision" else {"engine": _engine(asked)}),
         "zip": [leaves],
         "measure": {"repeats": 1},
     }
     head = "# `harness compare` on this file finds it again; `harness view` shows it.\n"
     return head + "".join(f"{key}: {json.dumps(value)}\n" for key, value in lines.items())
+
+
+def _rows(case: Case) -> list[dict[str, object]]:
+    bodies = case.scene.bodies
+    rows = zip(
+        bodies.positions.tolist(),
+        bodies.velocities.tolist(),
+        bodies.quaternions.tolist(),
+        bodies.spins.tolist(),
+        bodies.sizes.tolist(),
+        strict=True,
+    )
+    moving = isinstance(case.pose, Frame)
+    return [
+        {"position": at, "velocity": way if moving else [0, 0, 0], "orientation": turned}
+        | ({"spin": spin} if moving else {})
+        | {"size": size}
+        for at, way, turned, spin, size in rows
+    ]
+
+
+def _engine(asked: Question) -> dict[str, object]:
+    within = {"within": asked.within} if asked.query in NEAR_QUERIES else {}
+    return {"query": asked.query, **within, "tolerance": asked.tolerance}
+
+
+def question_of(case: Case) -> str:
+    """What is asked, and what is true of it."""
+    truth, asked = case.judgement, case.question
+    state = "overlap" if truth.touching else "do not touch"
+    if asked.query == "collision":
+        return f"Do they touch? Exactly, they {state}; their gap is {truth.gap:.6g} m."
+    if asked.query == "impact":
+        there = f"Exactly, they {state} at {case.moment:.9g} s; their gap is {truth.gap:.6g} m."
+        return f"When do they begin to touch? {there}"
+    asks = "How far apart are they?" if asked.query == "distance" else f"Are they within {asked.within:g} m?"
+    return f"{asks} Exactly, their gap is {truth.gap:.17g} m."

@@ -97,7 +97,7 @@ def script_of(case: Case) -> str | None:
     case : of two bodies
     """
     call = CALLS.get((case.wrong.partition("/")[0], case.scene.shape)) if "/" not in case.wrong else None
-    if call is None or len(case.scene.bodies) != 2:
+    if call is None or case.question.query != "collision" or len(case.scene.bodies) != 2:
         return None
     text = _written(case, call)
     return text if text is not None and text.count("\n") <= LONGEST and reproduces(text) else None

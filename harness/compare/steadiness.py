@@ -11,12 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.arrays import Pairs
+from harness.compare.audit import changed_pair
 from harness.compare.budget import Budget
-from harness.compare.group import LARGEST_TOLERANCE
 from harness.compare.isolated import Isolated, UnusableError
 from harness.compare.poses import Pose
-from harness.compare.truths import Truths
+from harness.compare.query_answers import Told
 from harness.scene.scene import Scene
 
 _SEED = 259
@@ -31,7 +30,7 @@ class Unsteady:
     Parameters
     ----------
     pose, query_index : where; the number of the question in the first order, from 1
-    bodies : the first pair that one answer has and the other has not
+    bodies : the first pair of which one answer tells another thing
     random : it changes even when asked twice in a row, or as the first question of a new process
     """
 
@@ -48,7 +47,7 @@ class Unsteady:
 
 
 def unsteady(
-    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Pairs], budget: Budget
+    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Told], budget: Budget
 ) -> list[Unsteady]:
     """Ask every pose that was answered again. What is nearer than the method claims to know may change.
 
@@ -64,10 +63,10 @@ def unsteady(
     for place in order.tolist():
         if budget.spent or len(found) >= MOST_UNSTEADY:
             break
-        again = asked.pairs(poses[place])
+        again = asked.told(poses[place])
         if isinstance(again, str):
             continue  # the failure itself has been told, or will be
-        differing = _difference(asked.facts.tolerance, scene, poses[place], answers[place], again)
+        differing = changed_pair(asked.question, asked.facts, scene, poses[place], answers[place], again)
         if differing is not None:
             random = _is_random(asked, name, scene, poses[place])
             found.append(Unsteady(poses[place].name, place + 1, differing, random))
@@ -77,18 +76,18 @@ def unsteady(
 
 
 def _changed_afresh(
-    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Pairs]
+    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Told]
 ) -> list[Unsteady]:
     """The pose that was asked last, with the most before it, is the first question of a new process."""
     place = max(answers)
     try:
-        with Isolated(name, scene) as fresh:
-            answer = fresh.pairs(poses[place])
+        with Isolated(name, scene, question=asked.question) as fresh:
+            answer = fresh.told(poses[place])
     except UnusableError:
         return []
     if isinstance(answer, str):
         return []
-    differing = _difference(asked.facts.tolerance, scene, poses[place], answers[place], answer)
+    differing = changed_pair(asked.question, asked.facts, scene, poses[place], answers[place], answer)
     if differing is None:
         return []
     return [Unsteady(poses[place].name, place + 1, differing, _is_random(asked, name, scene, poses[place]))]
@@ -99,30 +98,19 @@ _TRIES = 8
 
 def _is_random(asked: Isolated, name: str, scene: Scene, pose: Pose) -> bool:
     """Whether a pose that follows itself, or comes first, gets several answers."""
-    asked.pairs(pose)
-    in_a_row = {_key(asked.pairs(pose)) for _ in range(_TRIES)}
+    asked.told(pose)
+    in_a_row = {_key(asked.told(pose)) for _ in range(_TRIES)}
     if len(in_a_row) > 1:
         return True
     first = set()
     for _ in range(2):
         try:
-            with Isolated(name, scene) as fresh:
-                first.add(_key(fresh.pairs(pose)))
+            with Isolated(name, scene, question=asked.question) as fresh:
+                first.add(_key(fresh.told(pose)))
         except UnusableError:
             return False
     return len(first) > 1
 
 
-def _key(answer: Pairs | str) -> bytes | str:
-    return answer if isinstance(answer, str) else answer.tobytes()
-
-
-def _difference(tolerance: float, scene: Scene, pose: Pose, answer: Pairs, other: Pairs) -> tuple[int, int] | None:
-    """The first pair that only one answer has, and that is farther from touching than the tolerance."""
-    if np.array_equal(answer, other):
-        return None
-    truths = Truths(scene, pose)
-    for i, j in sorted(set(map(tuple, answer.tolist())) ^ set(map(tuple, other.tolist()))):
-        if abs(truths.judgement((i, j)).gap) > min(tolerance, LARGEST_TOLERANCE) * scene.bodies.sizes[[i, j]].max():
-            return i, j
-    return None
+def _key(answer: Told | str) -> tuple[tuple[tuple[int, int], float], ...] | str:
+    return answer if isinstance(answer, str) else tuple(sorted(answer.items()))

@@ -1,4 +1,4 @@
-"""Counts of the verdicts of two backends on one shape."""
+"""Counts of the verdicts of two backends on one shape, asked one query."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field, fields
 from typing import TypeVar
 
-from harness.vocabulary import Shape
+from harness.vocabulary import Query, Shape
 
 NamePair = tuple[str, str]
 """Of what is compared. A name is opaque everywhere but where it is turned into what is asked."""
@@ -17,10 +17,16 @@ LARGEST_DECADE = 16
 
 @dataclass
 class Counts:
-    """Counts of one pair of backends on one shape."""
+    """Counts of one pair of backends on one shape, asked one query."""
 
     backends: NamePair
     shape: Shape
+    query: Query = field(default="collision", kw_only=True)
+
+    @property
+    def of(self) -> tuple[NamePair, Shape, Query]:
+        """What is counted together."""
+        return self.backends, self.shape, self.query
 
     def add(self, other: Counts) -> None:
         """Take in the counts of another scene."""
@@ -131,9 +137,9 @@ C = TypeVar("C", bound=Counts)
 
 
 def merge(counts: list[C], more: list[C]) -> None:
-    """Add counts to those of the same backends and shape, in place."""
+    """Add counts to those of the same backends, shape and query, in place."""
     for one in more:
-        same = next((c for c in counts if (c.backends, c.shape) == (one.backends, one.shape)), None)
+        same = next((c for c in counts if c.of == one.of), None)
         if same is None:
             counts.append(one)
         else:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from harness.compare.certificate import Judgement
+from harness.compare.exact_gap import ExactGap
 from harness.compare.judge import judge, touches
-from harness.compare.poses import Pose
+from harness.compare.poses import Frame, Pose
 from harness.scene.scene import Scene
+from harness.vocabulary import Shape
 
 Pair = tuple[int, int]
 
@@ -27,6 +29,8 @@ class Truths:
         self._judged: dict[Pair, Judgement] = {}
         self._of_hulls: dict[Pair, Judgement] = {}
         self._touching: dict[Pair, bool] = {}
+        self._gaps: dict[tuple[Pair, Shape], ExactGap] = {}
+        self._later: dict[float, Truths] = {}
 
     def judgement(self, pair: Pair) -> Judgement:
         """Whether they touch, with gap and proof."""
@@ -51,3 +55,16 @@ class Truths:
                 else touches(self._scene, *pair, self.pose.positions, self.pose.quaternions)
             )
         return self._touching[pair]
+
+    def gap(self, pair: Pair, shape: Shape) -> ExactGap:
+        """How far they are apart, of a shape: that of the scene, or their hulls in place of meshes."""
+        if (pair, shape) not in self._gaps:
+            self._gaps[pair, shape] = ExactGap(replace(self._scene, shape=shape), self.pose, pair)
+        return self._gaps[pair, shape]
+
+    def later(self, seconds: float) -> Truths:
+        """What is true so many seconds after the start of the frame that the pose is."""
+        if seconds not in self._later:
+            assert isinstance(self.pose, Frame), "bodies move in frames only"
+            self._later[seconds] = Truths(self._scene, self.pose.at(self._scene, seconds))
+        return self._later[seconds]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
+from harness.vocabulary import Query
 
 
 @dataclass
@@ -67,6 +68,11 @@ class Asking(ABC):
     @abstractmethod
     def frame(self, flight: _Flight, number: int) -> None:
         """Ask a frame, within the clock, and observe what it answers, outside of it."""
+
+    @property
+    @abstractmethod
+    def _query(self) -> Query:
+        """What is asked."""
 
     @property
     @abstractmethod
@@ -115,8 +121,11 @@ class Asking(ABC):
             "event_digest": observer.digest.value,
         }
         trace = flight.observer.trace(end, counted, near=flight.log is not None)
+        answers = flight.log.answers() if flight.log is not None else None
+        if trace is not None:
+            trace = replace(trace, query=self._query, answers=answers, step=law.dt)
         course = folded_course(scene.bodies, scene.box, end) if plan.keeps("recording") else None
-        return Outcome(metrics, trace, course, flight.log.answers() if flight.log is not None else None)
+        return Outcome(metrics, trace, course, answers)
 
     def _log(self, traced: bool) -> NearLog | None:
         return None
@@ -135,6 +144,10 @@ class NearAsking(Asking):
     def __init__(self, scene: Scene, plan: Plan, finder: NearFinder | None, *, gaps: bool) -> None:
         super().__init__(scene, plan)
         self._finder, self._gaps = finder, gaps
+
+    @property
+    def _query(self) -> Query:
+        return "distance" if self._gaps else "tolerance"
 
     @property
     def counters(self) -> Mapping[str, float]:
@@ -156,7 +169,8 @@ class NearAsking(Asking):
         pairs, gaps, points = finder.checked(found)
         flight.near += len(pairs)
         if flight.log is not None:
-            flight.log.add(number, pairs, *((gaps, points) if self._gaps else (None, None)))
+            # two points that are near show that the pair is, also where no gap was asked for
+            flight.log.add(number, pairs, gaps if self._gaps else None, points)
         flight.observer.frame(time, pairs, flight.onsets.of(pairs), flight.folds.by(time))
 
     def found(self, flight: _Flight, times: float) -> dict[str, float]:
@@ -179,6 +193,10 @@ class ImpactAsking(Asking):
         super().__init__(scene, plan)
         self._finder = finder
         self._middle = Trajectory(scene.bodies, scene.box, folded=True, turning=False)
+
+    @property
+    def _query(self) -> Query:
+        return "impact"
 
     @property
     def counters(self) -> Mapping[str, float]:

@@ -57,12 +57,12 @@ class KernelNearPairs:
 
     def __init__(self, scene: Scene, broad_phase: BroadPhase, query: Query, within: float, tolerance: float) -> None:
         self._broad_phase, self._within = broad_phase, within
-        self._gaps = _gap_search(scene)
+        self._gaps = gap_search(scene)
         smallest = float(scene.bodies.sizes.min(initial=np.inf))
         decide = Accuracy(within, within, 0.0)
         self._accuracy = decide if query == "tolerance" else Accuracy(within, 0.0, tolerance * smallest)
         # a gap whose bounds leave open whether it is too wide is searched again, until they do not
-        self._decide, self._decision = _gap_search(scene), decide
+        self._decide, self._decision = gap_search(scene), decide
         self._tests = 0
 
     @property
@@ -87,12 +87,12 @@ class KernelNearPairs:
         found.gaps[open_], found.points[open_] = decided.gaps, decided.points
 
 
-class _GapSearch(Protocol):
+class GapSearch(Protocol):
     def __call__(self, pairs: Pairs, positions: Floats, quaternions: Floats, accuracy: Accuracy) -> Gaps:
         """The gaps of pairs, m; the accuracy in m."""
 
 
-def _gap_search(scene: Scene) -> _GapSearch:
+def gap_search(scene: Scene) -> GapSearch:
     """What measures the gaps of the bodies of a scene, frame after frame."""
     if scene.shape == "sphere" or scene.mesh is None:
         spheres = SphereGapPairs(scene.bodies.radii)

@@ -18,7 +18,8 @@ class NearAnswers:
     frames : (k,) int array, ascending; frame f is at f·dt
     pairs : (k, 2) int array
     gaps : (k,) float array, m; 0 where the two touch, nan where the query has none
-    points : (k, 2, 3) float array, m, in the world, the nearest points; nan where the query has none
+    points : (k, 2, 3) float array, m, in the world: the nearest points, or of a query without gaps two that are near;
+        nan where there are none
     """
 
     frames: Ints

@@ -15,7 +15,7 @@ from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.motion.answers import NearAnswers
 from harness.motion.course import Course
 from harness.motion.hit_states import HitStates
-from harness.vocabulary import WALLS
+from harness.vocabulary import WALLS, Query
 
 
 @dataclass
@@ -63,6 +63,10 @@ class Trace:
     counters : of the run
     near : whether a pair's event is that it came near, which is not asked whether they touch
     states : of the bodies of every hit, where they were asked for
+    query : what was asked of pairs
+    answers : the pairs that were near in every frame that was asked about, of a query about near pairs; frames of
+        bodies at rest are all like the first, which alone is asked
+    step : s a frame, of such a query
     """
 
     times: Floats
@@ -75,6 +79,20 @@ class Trace:
     counters: Mapping[str, float]
     near: bool = False
     states: HitStates | None = None
+    query: Query = "collision"
+    answers: NearAnswers | None = None
+    step: float = 0.0
+
+    @property
+    def gaps(self) -> list[float | None]:
+        """m, of the pair of each event at its time; None at walls, and where the query has none."""
+        if self.answers is None:
+            return [None] * len(self.times)
+        answers = self.answers
+        keys = zip((answers.frames * self.step).tolist(), *answers.pairs.T.tolist(), strict=True)
+        known = dict(zip(keys, answers.gaps.tolist(), strict=True))
+        events = zip(self.times.tolist(), *self.bodies.T.tolist(), strict=True)
+        return [_told(known.get(event)) for event in events]
 
     def to_json(self) -> dict[str, Any]:
         """The document that `harness trace --json` prints."""
@@ -87,29 +105,67 @@ class Trace:
         if self.states is not None:
             for event, states in zip(events, self.states.rows(), strict=True):
                 event |= {name: rows[: len(event["bodies"])] for name, rows in states.items()}
+        if self.near:
+            for event, gap in zip(events, self.gaps, strict=True):
+                event |= {} if gap is None else {"gap": gap}
         final = {
             "time": self.time,
             "position": self.positions.tolist(),
             "velocity": self.velocities.tolist(),
             "energy": self.energy,
         }
-        return {"events": events, "final": final, "counters": dict(self.counters)}
+        return {"events": events, "final": final, "counters": dict(self.counters), **self._found()}
+
+    def _found(self) -> dict[str, Any]:
+        """What other queries than collision add: the query, and its answers in full."""
+        if self.query == "collision":
+            return {}
+        if self.answers is not None:
+            return {"query": self.query, "near": self._near_rows(self.answers)}
+        between = np.flatnonzero(self.walls < 0).tolist()
+        impacts = [{"time": float(self.times[k]), "bodies": self.bodies[k].tolist()} for k in between]
+        return {"query": self.query, "impacts": impacts}
+
+    def _near_rows(self, answers: NearAnswers) -> list[dict[str, Any]]:
+        columns = answers.frames.tolist(), answers.pairs.tolist(), answers.gaps.tolist()
+        there: list[bool] = np.asarray(np.isfinite(answers.points).all(axis=(1, 2))).tolist()
+        return [
+            {
+                "frame": frame,
+                "time": frame * self.step,
+                "bodies": pair,
+                "gap": _told(gap),
+                "points": answers.points[k].tolist() if there[k] else None,
+            }
+            for k, (frame, pair, gap) in enumerate(zip(*columns, strict=True))
+        ]
 
     def to_csv(self) -> str:
-        """The table that `harness trace --csv` prints: a row a hit; what a wall does not have is empty."""
+        """The table that `harness trace --csv` prints: a row a hit; what a wall does not have is empty.
+
+        Of "distance" and "tolerance" a row is a pair that comes near, and its last column the gap (m) at that frame.
+        """
         states = self.states
         columns = [] if states is None else [(name, getattr(states, name)) for name in _STATE_COLUMNS.values()]
         text = io.StringIO()
         rows = csv.writer(text, lineterminator="\n")
         named = [f"{whose}{name}_{axis}" for whose in ("", "other_") for name in _STATE_COLUMNS for axis in "xyz"]
-        rows.writerow(["time", "kind", "body", "other", "wall", *(named if columns else ())])
+        rows.writerow(
+            ["time", "kind", "body", "other", "wall", *(named if columns else ()), *(["gap"] if self.near else [])]
+        )
+        gaps = self.gaps
         for k, (time, (i, j), wall) in enumerate(
             zip(self.times.tolist(), self.bodies.tolist(), self.walls.tolist(), strict=True)
         ):
-            met = ["pair", i, j, ""] if wall < 0 else ["wall", i, "", WALLS[wall]]
+            met = ["near" if self.near else "pair", i, j, ""] if wall < 0 else ["wall", i, "", WALLS[wall]]
             numbers = [number for body in (0, 1) for _, column in columns for number in column[k, body].tolist()]
-            rows.writerow([time, *met, *("" if isnan(number) else number for number in numbers)])
+            gap = ["" if gaps[k] is None else gaps[k]] if self.near else []
+            rows.writerow([time, *met, *("" if isnan(number) else number for number in numbers), *gap])
         return text.getvalue()
+
+
+def _told(gap: float | None) -> float | None:
+    return None if gap is None or isnan(gap) else gap
 
 
 # Names of the columns of a table, and of the fields of `HitStates` that they show.

@@ -47,6 +47,8 @@ Shape = TypeVar("Shape")
 
 # By how much the tolerance of a search that was given up is raised before it is done again, and how many are done.
 COARSER, MOST_SEARCHES = 10.0, 3
+# How often a search for a contact is taken up where it was given up, at the same tolerance, before that.
+MOST_RESUMED = 10
 
 
 class PairsAsked(NamedTuple):
@@ -194,14 +196,15 @@ def again_if_unknown(
     found: Onsets,
     in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
 ) -> Followed:
-    """A pair through a piece, and again at a larger tolerance where a search is given up.
+    """A pair through a piece, and on from where a search is given up at a larger tolerance.
 
-    One whose end is not known even then is taken to touch through the piece: coplanar faces that slide over each other
+    What was found before that stays, so that the time of a contact is no coarser because its end is hard to find. One
+    whose end is not known even then is taken to touch through the piece: coplanar faces that slide over each other
     neither cross nor come apart.
     """
     after = before
     for _ in range(MOST_SEARCHES):
-        after = in_piece(shape, a, b, piece, before, k, found)
+        after = in_piece(shape, a, b, piece, after, k, found)
         if after.known:
             break
         piece = Piece(piece.begin, piece.length, piece.straight, COARSER * piece.tolerance, piece.settled)
@@ -281,7 +284,7 @@ def solids_in_piece(
     end_of_contact: Callable[[Shape, Motion, Motion, PairState, float, float], tuple[ContactEnd, PairState]],
 ) -> Followed:
     """From contact to contact, given what finds the next one and what follows it to its end."""
-    state, count, parted = before.state, before.onsets, -1.0
+    state, count, parted, resumed = before.state, before.onsets, -1.0, 0
     while state.until < piece.length or (state.onset and state.until <= piece.length):
         if state.touches:
             ending, state = end_of_contact(shape, a, b, state, piece.length, piece.tolerance)
@@ -296,6 +299,10 @@ def solids_in_piece(
             onset = next_contact(shape, shape, a, b, state.until, piece.straight, piece.tolerance)
             begins = onset.verdict == SearchVerdict.FOUND
             if onset.verdict == SearchVerdict.STALLED and onset.time < piece.length:
+                nearer, resumed = onset.time > state.until, resumed + 1
+                state = PairState(False, onset.time, False, ROOTS, 0.0, 0)
+                if nearer and resumed <= MOST_RESUMED:
+                    continue
                 return Followed(state, count, False)
             until = piece.straight if onset.verdict == SearchVerdict.NEVER else onset.time
             state = PairState(False, until, begins, ROOTS, 0.0, 0)

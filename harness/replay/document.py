@@ -47,6 +47,13 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         few = len(recording.surface.vertices) < 2**16
         arrays["vertices"] = ("f4", recording.surface.vertices)
         arrays["faces"] = ("u2" if few else "u4", recording.surface.faces)
+    near = recording.near
+    if near is not None:
+        arrays["near_frames"] = ("u4", near.frames)
+        arrays["near_first"], arrays["near_second"] = (("i4", near.pairs[:, side]) for side in (0, 1))
+        arrays["near_points"] = ("f4", near.points)
+    if recording.hit_points is not None:
+        arrays["hit_points"] = ("f4", recording.hit_points)
     places: dict[str, tuple[str, int, int]] = {}
     content = bytearray()
     for name, (kind, values) in arrays.items():

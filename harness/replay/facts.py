@@ -9,7 +9,21 @@ from typing import Any
 from harness.replay.document import Fact
 
 _LEAVES = (
-    *("backend", "algorithm", "shape", "mesh", "count", "size", "speed", "spin", "packing", "box_ratio", "box"),
+    *(
+        "backend",
+        "algorithm",
+        "query",
+        "within",
+        "shape",
+        "mesh",
+        "count",
+        "size",
+        "speed",
+        "spin",
+        "packing",
+        "box_ratio",
+        "box",
+    ),
     *("response", "restitution", "overlap", "duration", "dt", "seed"),
 )
 _COUNTERS = ("pair_hits", "box_hits", "pair_tests", "narrow_tests", "box_tests", "predictions")

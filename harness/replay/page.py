@@ -91,7 +91,10 @@ def summary(recording: Recording) -> str:
     bodies = f"{len(recording)} {'body' if len(recording) == 1 else 'bodies'} ({look})"
     pairs = int((recording.hit_walls < 0).sum())
     how = "from hit to hit" if recording.dt is None else f"in frames of {recording.dt * 1000:.4g} ms"
-    hits = f"{pairs} hits between bodies and {len(recording.hit_walls) - pairs} at walls"
+    walls = len(recording.hit_walls) - pairs
+    hits = f"{pairs} hits between bodies and {walls} at walls"
+    if recording.near is not None:
+        hits = f"two bodies come near each other {pairs} {'time' if pairs == 1 else 'times'}, and {walls} hits at walls"
     return f"{bodies} for {recording.duration:g} s, computed {how}: {hits}"
 
 

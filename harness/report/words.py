@@ -79,10 +79,12 @@ def is_ranked(name: str) -> bool:
 
 
 def scene_text(parameters: Mapping[str, Any]) -> str:
-    """A scene in a phrase.
+    """A scene in a phrase, and what is asked of it where that is not collision.
 
     >>> scene_text({"count": 40, "mesh": "pumpkin-1753.ply", "shape": "hull", "packing": 0.0971}).replace("\u00a0", " ")
     '40 bodies of pumpkin-1753 (hull) at packing 0.0971'
+    >>> scene_text({"count": 9, "shape": "sphere", "query": "distance", "within": 0.05}).replace("\u00a0", " ")
+    '9 spheres, query distance within 0.05 m'
     """
     count = parameters.get("count")
     bodies = plural(int(count), "body", "bodies") if isinstance(count, int | float) else "bodies"
@@ -92,4 +94,12 @@ def scene_text(parameters: Mapping[str, Any]) -> str:
     elif mesh:
         bodies += f" of {PurePosixPath(str(mesh)).stem} ({shape})"
     packing = parameters.get("packing")
-    return f"{bodies} at packing {number(packing)}" if isinstance(packing, int | float) else bodies
+    scene = f"{bodies} at packing {number(packing)}" if isinstance(packing, int | float) else bodies
+    return ", ".join(part for part in (scene, _query_text(parameters)) if part)
+
+
+def _query_text(parameters: Mapping[str, Any]) -> str:
+    query, within = parameters.get("query"), parameters.get("within")
+    if query is None or query == "collision":
+        return ""
+    return f"query {query}" if within is None else f"query {query} within {leaf_text(within)}\u00a0m"

@@ -5,18 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from harness.experiment.experiment import Point
+from harness.motion.answers import NearAnswers
 from harness.motion.hits import Outcome
-from harness.runner.point import is_stepped
+from harness.motion.law import MotionLaw
+from harness.motion.reach import all_at_rest
+from harness.runner.contact_points import contact_points
+from harness.runner.point import is_stepped, law_of
 from harness.scene.scene import Scene
-from harness.store.recording import Recording, Surface
+from harness.store.recording import NearLines, Recording, Surface
 
 if TYPE_CHECKING:
     import pandas as pd
 
-# A sweep records a scene of at most this many bodies and hits, whose run took at most this long (s): all of an
-# experiment's page together, and of a default sweep a few seconds.
+# A sweep records a scene of at most this many bodies, hits and lines between near bodies, whose run took at most this
+# long (s): all of an experiment's page together, and of a default sweep a few seconds.
 MOST_BODIES = 500
+MOST_LINES = 50_000
 MOST_HITS = 5000
 MOST_SECONDS = 0.5
 
@@ -50,7 +57,21 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
         hit_times=trace.times,
         hit_bodies=trace.bodies,
         hit_walls=trace.walls,
+        near=_near_lines(outcome.answers, law_of(point), scene) if outcome.answers is not None else None,
+        hit_points=contact_points(scene, trace) if point.engine.query == "impact" else None,
     )
+
+
+def _near_lines(answers: NearAnswers, law: MotionLaw, scene: Scene) -> NearLines:
+    """The lines of all frames, between pairs that are apart and have points, which some libraries do not tell."""
+    with np.errstate(invalid="ignore"):
+        there = (np.linalg.norm(answers.points[:, 0] - answers.points[:, 1], axis=1) > 0.0) & (answers.gaps != 0.0)
+    found = NearLines(answers.frames[there], answers.pairs[there], answers.points[there])
+    if not all_at_rest(scene) or found.frames.max(initial=1) > 1:
+        return found
+    # the one frame that was asked about stands for all
+    frames = np.repeat(np.arange(1, law.frames + 1), len(found.frames))
+    return NearLines(frames, np.tile(found.pairs, (law.frames, 1)), np.tile(found.points, (law.frames, 1, 1)))
 
 
 def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
@@ -81,5 +102,7 @@ def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
         & (runs["events"] <= MOST_HITS)
         & (runs["run_seconds"] <= MOST_SECONDS)
     ]
+    if "near_pairs" in small.columns:
+        small = small[small["near_pairs"].fillna(0.0) <= MOST_LINES]
     fullest = dict(zip(small["point"], small["count"], strict=True))
     return max((key for key in keys if key in fullest), key=lambda key: fullest[key], default=None)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import gc
 import os
-import signal
 import sys
 from contextlib import suppress
 from multiprocessing.connection import Connection
@@ -27,7 +26,6 @@ from harness.scene.mesh import Mesh
 def main() -> None:
     """Serve until the other side closes the socket."""
     channel: Connection = Connection(int(sys.argv[1]))
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the sweeping process answers Ctrl-C, by closing the socket
     parent = os.getppid()
     die_with_parent()  # until it can see the socket close: importing a backend may hang
     if os.getppid() != parent:

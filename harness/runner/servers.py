@@ -27,6 +27,7 @@ from harness.child_process import LONGEST_WAIT, Ending
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
+from harness.process_limits import interrupts_blocked
 from harness.python_child import python_command
 from harness.runner.task import Report, Task
 from harness.scene.mesh import Mesh
@@ -101,6 +102,8 @@ class Servers:
 
     def _try(self, backend: str, task: Task, mesh: Mesh | None, tried: int) -> tuple[Report | None, Ending | None]:
         """The report of a task; without one, how the server ended, if by itself, that died or was silent over it."""
+        if backend in self._servers and self._servers[backend].dead:  # this run has nothing to do with that
+            self._servers.pop(backend).close()
         if backend not in self._servers:
             server = _Server(backend)
             self._servers[backend] = server
@@ -109,7 +112,8 @@ class Servers:
                 self._servers.pop(backend).close()
                 if broken.status == "crashed" and not _enough(tried, server.ending):
                     return None, server.ending
-                self._broken[backend] = broken
+                if not _killed(server.ending):  # that says nothing of the next import
+                    self._broken[backend] = broken
                 return broken, server.ending
         server = self._servers[backend]
         report = server.run(task, mesh)
@@ -120,8 +124,12 @@ class Servers:
 
 def _enough(tries: int, ending: Ending | None) -> bool:
     """Whether a run is given up after so many tries, of which the last ended its server so."""
-    killed = ending is not None and ending.signal in _FROM_OUTSIDE
-    return tries >= (_TRIES_IF_KILLED if killed else _TRIES)
+    return tries >= (_TRIES_IF_KILLED if _killed(ending) else _TRIES)
+
+
+def _killed(ending: Ending | None) -> bool:
+    """Whether a process was ended from outside."""
+    return ending is not None and ending.signal in _FROM_OUTSIDE
 
 
 def task_of(
@@ -165,15 +173,16 @@ class _Server:
             ours.setsockopt(socket.SOL_SOCKET, option, struct.pack("ll", _MESSAGE, 0))
         with theirs:
             try:
-                self._process = subprocess.Popen(
-                    python_command("harness.runner.server", str(theirs.fileno()), backend),
-                    pass_fds=[theirs.fileno()],
-                    stdin=subprocess.DEVNULL,
-                    stdout=subprocess.DEVNULL,  # that is for results alone
-                    env=os.environ | _ONE_THREAD | {_MARK: self._mark},
-                    # what is sent to the sweep's whole group, as a terminal does, is for the sweep to answer
-                    start_new_session=True,
-                )
+                with interrupts_blocked():  # the sweep answers Ctrl-C, also while the server starts
+                    self._process = subprocess.Popen(
+                        python_command("harness.runner.server", str(theirs.fileno()), backend),
+                        pass_fds=[theirs.fileno()],
+                        stdin=subprocess.DEVNULL,
+                        stdout=subprocess.DEVNULL,  # that is for results alone
+                        env=os.environ | _ONE_THREAD | {_MARK: self._mark},
+                        # what is sent to the sweep's whole group, as a terminal does, is for the sweep to answer
+                        start_new_session=True,
+                    )
             except OSError as error:
                 ours.close()
                 why = f"no process can be started: {error.strerror}"
@@ -183,6 +192,11 @@ class _Server:
         self._ready = False
         self._killed_here = False
         self.ending: Ending | None = None  # if that was not by `close`
+
+    @property
+    def dead(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.poll() is not None
 
     def start(self, timeout: float) -> Report | None:
         """Wait until it is ready to run; a report where its backend keeps it from that.

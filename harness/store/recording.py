@@ -6,6 +6,7 @@ first orientations and the spins give every pose at any time exactly.
 
 from __future__ import annotations
 
+import base64
 import json
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
@@ -37,6 +38,21 @@ class Surface(NamedTuple):
     faces: NDArray[np.int32]
 
 
+class NearLines(NamedTuple):
+    """Pairs that were near in the frames of a run, and the nearest points that it found of them.
+
+    Parameters
+    ----------
+    frames : (k,) int array, ascending; frame f is at f dt
+    pairs : (k, 2) body numbers
+    points : (k, 2, 3) float array, m, in the world, of the first and of the second body
+    """
+
+    frames: Ints
+    pairs: Pairs
+    points: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Recording:
     """What a replay shows of one run.
@@ -54,6 +70,8 @@ class Recording:
     leg_positions, leg_velocities : (m, 3) m and m/s
     hit_times, hit_bodies, hit_walls : (k,) s, (k, 2) body numbers, the second -1 at a wall, and (k,) numbers of walls,
         -1 between bodies
+    near : of a run that asked which pairs are near
+    hit_points : (k, 3) m, where the bodies of a hit touched, nan at walls; of a run that asked when bodies meet
     """
 
     shape: str
@@ -71,6 +89,8 @@ class Recording:
     hit_times: Floats
     hit_bodies: Pairs
     hit_walls: Ints
+    near: NearLines | None = None
+    hit_points: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.sizes)
@@ -83,6 +103,7 @@ def write(connection: sqlite3.Connection, run: int, recording: Recording) -> Non
         "duration": recording.duration,
         "dt": recording.dt,
         "half_box": recording.half_box.tolist(),
+        **_facts_of_query(recording),
     }
     surface = recording.surface
     if surface is not None:
@@ -110,6 +131,25 @@ def write(connection: sqlite3.Connection, run: int, recording: Recording) -> Non
         "INSERT INTO frame (run, place, time, data) VALUES (?, ?, ?, ?)",
         ((run, place, time, legs[list(rows)].tobytes()) for place, (time, rows) in enumerate(moments)),
     )
+
+
+def _facts_of_query(recording: Recording) -> dict[str, Any]:
+    """What other queries than collision add, in base64; a file has no tables for it."""
+    facts: dict[str, Any] = {}
+    if recording.near is not None:
+        facts["near"] = {name: _packed(values) for name, values in recording.near._asdict().items()}
+    if recording.hit_points is not None:
+        facts["hit_points"] = _packed(recording.hit_points)
+    return facts
+
+
+def _packed(values: NDArray[Any]) -> str:
+    kind = "<f8" if np.issubdtype(values.dtype, np.floating) else "<i8"
+    return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode("ascii")
+
+
+def _unpacked(text: str, kind: str, *shape: int) -> NDArray[Any]:
+    return np.frombuffer(base64.b64decode(text), kind).reshape(-1, *shape)
 
 
 def _hits(recording: Recording) -> Iterator[tuple[float, str, int, int | None, str | None]]:
@@ -194,6 +234,16 @@ def _read(
         hit_times=np.array([time for time, *_ in hits], np.float64),
         hit_bodies=np.array([(i, j) for _, i, j, _ in hits], np.int64).reshape(-1, 2),
         hit_walls=np.array([-1 if wall is None else WALLS.index(wall) for *_, wall in hits], np.int64),
+        near=_near_lines(facts["near"]) if "near" in facts else None,
+        hit_points=_unpacked(facts["hit_points"], "<f8", 3) if "hit_points" in facts else None,
+    )
+
+
+def _near_lines(packed: Mapping[str, str]) -> NearLines:
+    return NearLines(
+        _unpacked(packed["frames"], "<i8"),
+        _unpacked(packed["pairs"], "<i8", 2),
+        _unpacked(packed["points"], "<f8", 2, 3),
     )
 
 

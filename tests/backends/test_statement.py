@@ -3,13 +3,14 @@
 import json
 import os
 import time
+import uuid
 
 import pytest
 
 from harness.backends import registry
 from harness.backends.statement import Statement, _asked, approximation, missing, statement
 from harness.cli.main import main
-from tests.runner.hostile_plugins import install
+from tests.runner.hostile_plugins import MARK, install, left_behind
 
 WAYS = {
     "exits": "importing it ended its process with exit code 3",
@@ -54,6 +55,17 @@ def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, ca
     assert (said.missing, said.tolerance) == (None, {"sphere": 1e-9, "hull": 1e-9, "mesh": 1e-9})
     assert os.getcwd() == here
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("way", "missing"), [("leaves a process", None), ("leaves a process and exits", WAYS["exits"])]
+)
+def test_what_a_strangers_backend_left_behind_is_ended(installed, monkeypatch, way, missing):
+    installed(way)
+    mark = uuid.uuid4().hex
+    monkeypatch.setenv(MARK, mark)
+    assert statement("odd", 100.0).missing == missing
+    assert left_behind(mark, 0.0) == []
 
 
 def test_it_is_asked_once(installed):

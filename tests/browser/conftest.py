@@ -35,6 +35,13 @@ scene: {shape: sphere, count: 12, box: [5, 4, 4], size: {uniform: [0.5, 1.5]}}
 motion: {duration: 3, response: elastic}
 engine: {algorithm: predictive}
 """
+GAPS = """
+title: Gaps
+scene: {mesh: cube.ply, shape: hull, count: 6, box: [3, 3, 3], seed: 3}
+motion: {duration: 1, dt: 1/20, response: none}
+engine: {algorithm: grid, query: distance, within: 0.5}
+"""
+IMPACTS = GAPS.replace("Gaps", "Impacts").replace("query: distance, within: 0.5", "query: impact")
 
 
 def record(text: str) -> Recording:
@@ -55,6 +62,16 @@ def cubes() -> Recording:
 @pytest.fixture(scope="session")
 def spheres() -> Recording:
     return record(SPHERES)
+
+
+@pytest.fixture(scope="session")
+def gaps() -> Recording:
+    return record(GAPS)
+
+
+@pytest.fixture(scope="session")
+def impacts() -> Recording:
+    return record(IMPACTS)
 
 
 @pytest.fixture(scope="session")

@@ -22,10 +22,11 @@ WALLS = ("x−", "x+", "y−", "y+", "z−", "z+")
 
 
 @pytest.fixture(scope="session")
-def pages(cubes, spheres, tmp_path_factory):
+def pages(cubes, spheres, gaps, impacts, tmp_path_factory):
     folder = tmp_path_factory.mktemp("replay")
-    (folder / "cubes.html").write_text(replay_page(cubes, "Cubes"), encoding="utf-8")
-    (folder / "spheres.html").write_text(replay_page(spheres, "Spheres"), encoding="utf-8")
+    recordings = {"cubes": cubes, "spheres": spheres, "gaps": gaps, "impacts": impacts}
+    for name, recording in recordings.items():
+        (folder / f"{name}.html").write_text(replay_page(recording, name.title()), encoding="utf-8")
     return folder
 
 
@@ -240,3 +241,52 @@ def test_the_viewer_puts_bodies_where_the_run_had_them(replay, name, request):
             start = Rotation.from_quat(recording.quaternions, scalar_first=True)
             ours = Rotation.from_quat(np.reshape(turns, (-1, 4)), scalar_first=True)
             assert ((Rotation.from_rotvec(recording.spins * time) * start).inv() * ours).magnitude().max() < 1e-5
+
+
+def _painted(page, name):
+    """How many pixels of the picture have a colour of the page's style, about."""
+    shown = np.asarray(Image.open(io.BytesIO(page.locator("#stage").screenshot())).convert("RGB"), np.int64)
+    colour = page.evaluate("(name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()", name)
+    wanted = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)])
+    return int((np.abs(shown - wanted).max(axis=2) <= 24).sum())
+
+
+@pytest.mark.slow
+def test_a_line_joins_the_nearest_points_of_near_bodies(replay, gaps):
+    page = replay("gaps")
+    assert page.locator("#key-near").is_visible()
+    assert not page.locator("#key-ring").is_visible()
+    time_of(page)
+    assert "0 pairs near but apart" in page.locator("#now").text_content()
+    without = _painted(page, "--near")
+    page.click("#on")
+    time_of(page)
+    first = gaps.near.frames == 1
+    lengths = np.linalg.norm(gaps.near.points[first, 0] - gaps.near.points[first, 1], axis=1)
+    i, j = gaps.near.pairs[first][lengths.argmin()]
+    text = page.locator("#now").text_content()
+    assert f"{first.sum()} pairs near but apart" in text
+    found = re.search(r"the shortest line (\d+) – (\d+): ([\d.]+) m", text)
+    assert (int(found[1]), int(found[2])) == (i, j)
+    assert abs(float(found[3]) - lengths.min()) < 0.005 * lengths.min()
+    assert "events" in text
+    assert "hits" not in text
+    assert _painted(page, "--near") > without + 20
+
+
+@pytest.mark.slow
+def test_a_ring_shows_where_bodies_met_in_the_frame_of_the_hit(replay, impacts):
+    page = replay("impacts")
+    assert page.locator("#key-ring").is_visible()
+    assert not page.locator("#key-near").is_visible()
+    time_of(page)
+    without = _painted(page, "--ink")
+    time = impacts.hit_times[impacts.hit_walls < 0][0]
+    while time_of(page) < time - 5e-4:
+        page.click("#after")
+    assert abs(time_of(page) - time) < 1e-3
+    assert _painted(page, "--ink") > without + 20
+    page.click("#back")
+    page.click("#back")
+    time_of(page)
+    assert _painted(page, "--ink") <= without + 20

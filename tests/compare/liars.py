@@ -133,6 +133,64 @@ class Plugin(Fcl):
 """
 
 
+# Of other queries. Each is FCL with the answers of this program's kernels, but for what stands here.
+QUERY_LIARS = {
+    "gaps-too-wide": """
+        def distances(self, positions, quaternions, within):
+            pairs, gaps, points = super().distances(positions, quaternions, within)
+            near = gaps * 1.01 <= within
+            return NearPairs(pairs[near], 1.01 * gaps[near], points[near])
+    """,
+    "loses-near-pairs": """
+        def distances(self, positions, quaternions, within):
+            return NearPairs(*(part[1:] for part in super().distances(positions, quaternions, within)))
+    """,
+    "late": """
+        def impacts(self, *asked):
+            pairs, times = super().impacts(*asked)
+            late = times + 0.01 <= asked[-1]
+            return ImpactTimes(pairs[late], times[late] + 0.01)
+    """,
+    "early": """
+        def impacts(self, *asked):
+            pairs, times = super().impacts(*asked)
+            return ImpactTimes(pairs, np.maximum(times - 0.005, 0.0))
+    """,
+    "misses-hits": """
+        def impacts(self, *asked):
+            return ImpactTimes(*(part[:0] for part in super().impacts(*asked)))
+    """,
+}
+
+QUERY_HEAD = """
+import numpy as np
+from harness.backends.fcl import Fcl
+from harness.backends.protocol import ImpactTimes, NearPairs
+from harness.methods.at_poses import Queried
+from harness.methods.impact_times import FrameMotion
+from harness.vocabulary import MethodName
+
+class Right(Fcl):
+    def load(self, scene):
+        super().load(scene)
+        self.scene = scene
+    def asked(self, query, within):
+        found = Queried(MethodName("fcl", "brute-force", self.scene.shape, query), 1e-9, within)
+        found.load(self.scene)
+        return found
+    def distances(self, positions, quaternions, within):
+        return self.asked("distance", within).near(positions.copy(), quaternions.copy())
+    def impacts(self, positions, quaternions, velocities, spins, duration):
+        middle = positions + 0.5 * duration * velocities
+        arrays = [part.copy() for part in (positions, quaternions, middle, velocities, spins)]
+        return self.asked("impact", 0.0).impacts(FrameMotion(*arrays, True), duration)
+
+class Plugin(Right):
+    name = {name!r}
+    queries = ("distance", "impact")
+"""
+
+
 def install(name: str, folder, monkeypatch) -> str:
     """Install one of them as a package of its own would be; its name."""
     metadata = folder / f"{name.replace('-', '_')}-1.0.dist-info"
@@ -140,7 +198,8 @@ def install(name: str, folder, monkeypatch) -> str:
     (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
     module = f"{name.replace('-', '_')}_liar"
     (metadata / "entry_points.txt").write_text(f"[harness.backends]\n{name} = {module}:Plugin\n")
-    body = textwrap.indent(textwrap.dedent(LIARS[name]), 4 * " ")
-    (folder / f"{module}.py").write_text(HEAD.format(name=name) + body)
+    head, lies = (HEAD, LIARS[name]) if name in LIARS else (QUERY_HEAD, QUERY_LIARS[name])
+    body = textwrap.indent(textwrap.dedent(lies), 4 * " ")
+    (folder / f"{module}.py").write_text(head.format(name=name) + body)
     monkeypatch.syspath_prepend(str(folder))
     return name

@@ -4,6 +4,7 @@ import base64
 import io
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from PIL import Image
 from harness.replay.document import document
 from harness.replay.page import replay_page
 from harness.replay.still import still
+from harness.store.recording import NearLines
 from tests.store.test_recording import recording
 
 KINDS = {"f4": "<f4", "f8": "<f8", "i4": "<i4", "u4": "<u4", "u2": "<u2"}
@@ -42,6 +44,18 @@ def test_hits_name_bodies_and_walls():
     assert found["hit_times"].tolist() == [0.7, 0.9]
     assert found["hit_first"].tolist() == [0, 1]
     assert found["hit_second"].tolist() == [2, -1 - 3]
+
+
+def test_lines_and_rings_are_there_where_a_query_has_them():
+    assert not {"near_frames", "hit_points"} & arrays(document(recording(), "X")).keys()
+    near = NearLines(np.array([1, 3]), np.array([[0, 1], [0, 2]]), np.arange(12.0).reshape(2, 2, 3))
+    made = replace(recording(), near=near, hit_points=np.array([[0.5, 0, 0], [np.nan] * 3]))
+    found = arrays(document(made, "X"))
+    assert found["near_frames"].tolist() == [1, 3]
+    assert (found["near_first"].tolist(), found["near_second"].tolist()) == ([0, 0], [1, 2])
+    assert found["near_points"].tolist() == list(range(12))
+    assert found["hit_points"][:3].tolist() == [0.5, 0, 0]
+    assert "two bodies come near each other 1 time, and 1 hits at walls" in replay_page(made, "X")
 
 
 def test_a_large_mesh_has_wide_corner_numbers():

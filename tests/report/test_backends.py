@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from harness.report.backends.proof import sentences_of
 from harness.report.site import render
 from harness.store.database import Database
 from harness.store.records import PointRow
@@ -104,6 +105,20 @@ def test_a_case_has_its_proof_picture_and_file(pages):
     assert pages["cases/case-1.yaml"] == "title: odd is wrong\n"
     assert pages["cases/case-1.svg"].startswith("<svg")
     assert "harness view cases/case-1.yaml" in page
+
+
+def test_a_case_of_another_query_says_what_was_asked_and_told():
+    proof = {"kind": "nearest points and separating planes", "first": [[0, "1"]], "second": [[2, "1"]], "planes": 3}
+    asked = {"query": "distance", "within": 0.5, "tolerance": 1e-6, "told": 0.25}
+    gap = {"gap": 0.125, "certificate": proof | {"lower": 0.125, "upper": 0.125, "touching": False}}
+    found = sentences_of(CASE | asked | {"minimised": {"bodies": [0, 1]} | gap | asked})
+    assert found[0] == "Bodies 0 and 1 are 0.125 m apart; odd says that they are 0.25 m apart."
+    assert found[1] == "Asked: distance within 0.500 m."
+    assert "3 planes keep all parts of one body at least 0.125 m from all parts of the other" in found[2]
+    late = {"query": "impact", "tolerance": 1e-6, "moment": 0.0625, "told": None}
+    found = sentences_of(CASE | late | {"minimised": SHOWN["minimised"] | late})
+    assert found[0].endswith("0.0625 s after the start of the frame; odd says that they do not begin to touch in it.")
+    assert found[-1] == "2 bodies in one frame show it by themselves."
 
 
 def test_crashes_approximations_flights_and_gaps_are_told(pages):

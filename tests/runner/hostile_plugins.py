@@ -57,6 +57,7 @@ HEADS = {
     "is no Python": "this is no Python",
     "crashes": "ctypes.string_at(0)",
     "leaves a process": LEAVE,
+    "leaves a process and exits": LEAVE + "\nos._exit(3)",
     "fills the memory": "block = [bytearray(1 << 28) for _ in range(1000)]",
     "speaks in a thread": SPEAK,
     "is slow": "time.sleep(60)",
@@ -128,14 +129,14 @@ def run(folder: Path, *words: str) -> tuple[int, str, str]:
         os.killpg(command.pid, 9)
         output, errors = command.communicate()
         errors += f"\nTraceback: did not end within {LONGEST:g} s"
-    if left := _left(mark):
+    if left := left_behind(mark):
         errors += f"\nTraceback: left {left}"
         for process in left:
             process.kill()
     return command.returncode, output, errors
 
 
-def _left(mark: str, within: float = 10.0) -> list[psutil.Process]:
+def left_behind(mark: str, within: float = 10.0) -> list[psutil.Process]:
     """The processes with this mark that do not end by themselves soon."""
     deadline = time.monotonic() + within
     while True:

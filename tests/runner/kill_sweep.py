@@ -1,4 +1,4 @@
-"""Kills a sweep at random moments, as often as on_demand, and checks each time that nothing finished was lost.
+"""Kills a sweep at random moments, as often as is asked for, and checks each time that nothing finished was lost.
 
     python tests/runner/kill_sweep.py [KILLS]
 
@@ -134,8 +134,10 @@ class Killed:
                 return 0
             what = "json_extract(parameters, '$.backend'), json_extract(parameters, '$.algorithm'), repeat, status"
             rows, controls = (
-                connection.execute(f"SELECT {what} FROM {table} JOIN point ON point.id = {table}.point").fetchall()
-                for table in ("run", "control")
+                connection.execute(
+                    f"SELECT {what}, {reason} FROM {table} JOIN point ON point.id = {table}.point"
+                ).fetchall()
+                for table, reason in (("run", "reason"), ("control", "NULL"))
             )
             empty = (
                 "SELECT count(*) FROM run WHERE status = 'ok' "
@@ -147,11 +149,12 @@ class Killed:
         kept = [
             f"kill (backend {backend}, algorithm {algorithm}, repeat {n}{told})"
             for found, told in ((rows, ""), (controls, ", control"))
-            for backend, algorithm, n, _ in found
+            for backend, algorithm, n, *_ in found
         ]
         assert len(kept) == len(set(kept)), "a run was done twice"
         assert self.said <= set(kept), f"lost: {self.said - set(kept)}"
-        assert {status for *_, status in rows + controls} <= self.statuses
+        odd = [row for row in rows + controls if row[3] not in self.statuses]
+        assert odd == [], f"how these ended is not its own doing: {odd}"
         return len(rows)
 
     def processes(self) -> list[psutil.Process]:

@@ -1,6 +1,7 @@
 """A warm server that dies or is stopped costs nothing but time, and leaves nothing behind."""
 
 import resource
+import signal
 import threading
 import time
 
@@ -90,22 +91,62 @@ def test_a_server_that_is_killed_from_outside_says_less_of_its_run_than_one_that
         assert run(servers, spheres()).status == "ok"
 
 
+@pytest.fixture
+def hit_while_starting(monkeypatch):
+    """Sends a signal to that many servers as soon as they are started; returns the servers."""
+
+    def hit(number, most):
+        started, found = rooms._Server.start, []
+
+        def start(server, timeout):
+            if len(found) < most:
+                found.append(server)
+                server._process.send_signal(number)
+            return started(server, timeout)
+
+        monkeypatch.setattr(rooms._Server, "start", start)
+        return found
+
+    return hit
+
+
 @pytest.mark.slow
-def test_servers_killed_while_they_start_are_started_again(spheres, monkeypatch):
+def test_servers_killed_while_they_start_are_started_again(spheres, hit_while_starting):
     """Three in a row, as when memory is short: what was no crash of a backend is no reason to give it up."""
-    started = rooms._Server.start
-    killed = []
-
-    def start(server, timeout):
-        if len(killed) < 3:
-            killed.append(server)
-            server._process.kill()
-        return started(server, timeout)
-
-    monkeypatch.setattr(rooms._Server, "start", start)
+    killed = hit_while_starting(signal.SIGKILL, 3)
     with Servers() as servers:
         assert run(servers, spheres()).status == "ok"
     assert len(killed) == 3
+
+
+@pytest.mark.slow
+def test_a_backend_whose_servers_were_killed_is_given_up_for_one_run_only(spheres, hit_while_starting):
+    killed = hit_while_starting(signal.SIGTERM, 4)
+    with Servers() as servers:
+        assert run(servers, spheres()).status == "crashed"
+        assert run(servers, spheres()).status == "ok"
+    assert len(killed) == 4
+
+
+@pytest.mark.slow
+def test_a_server_is_deaf_to_ctrl_c_from_its_beginning(spheres, hit_while_starting, monkeypatch, capfd):
+    monkeypatch.setattr(rooms, "_TRIES", 1)
+    hit = hit_while_starting(signal.SIGINT, 1)
+    with Servers() as servers:
+        assert run(servers, spheres()).status == "ok"
+    assert len(hit) == 1
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.slow
+def test_a_server_that_died_between_two_runs_costs_the_second_no_try(spheres, monkeypatch):
+    monkeypatch.setattr(rooms, "_TRIES_IF_KILLED", 1)
+    with Servers() as servers:
+        assert run(servers, spheres()).status == "ok"
+        (server,) = servers._servers.values()
+        server._process.kill()
+        server._process.wait()
+        assert run(servers, spheres()).status == "ok"
 
 
 @pytest.mark.slow

@@ -36,6 +36,16 @@ CROWDED = (
     + b"".join(struct.pack(">fi4IB2f", 0.5, 4, *polygon, 2, 0.1, 0.2) for polygon in CUBE.polygons)
     + b"\0\1"
 )
+# two rows of an element between the vertices and the six faces, as text and binary
+BETWEEN = [
+    (content[:-faces] + rows + content[-faces:]).replace(
+        b"element face", b"element gap 2\nproperty int id\nelement face"
+    )
+    for content, faces, rows in (
+        (ply(CUBE), len("4 0 1 2 3\n") * 6, b"5\n7\n"),
+        (ply(CUBE, "<"), struct.calcsize("<B4i") * 6, struct.pack("<2i", 5, 7)),
+    )
+]
 FACES_FIRST = b"".join(sorted(obj(CUBE).splitlines(True), key=lambda line: line[:1]))
 # each triangle of the cube, with steps without area in between that keep the sense of turning
 FIRSTS = [a for a, _, _ in TRIANGLES.polygons[1:]] + [0]
@@ -68,6 +78,8 @@ READ = [
     ("a.ply", "mixed lengths, binary", ply(MIXED, "<"), 6, 1),
     ("a.ply", "mixed lengths, binary, of other types", ply(MIXED, ">", "double", "ushort", "uint"), 6, 1),
     ("a.ply", "other elements, properties and lists", CROWDED, 6, 1),
+    ("a.ply", "an element between vertices and faces", BETWEEN[0], 6, 1),
+    ("a.ply", "an element between vertices and faces, binary", BETWEEN[1], 6, 1),
     ("a.ply", "bytes behind the faces", ply(CUBE, "<") + b"\0\1\2", 6, 1),
     ("a.ply", "a cut element behind the faces", ply(CUBE, "<", more="element edge 9\nproperty int a\n"), 6, 1),
     ("a.ply", "line ends of another system", ply(CUBE).replace(b"\n", b"\r\n"), 6, 1),
@@ -122,7 +134,7 @@ REFUSED = [
     ("a.ply", "triangle strips", ply(CUBE).replace(b"element face", b"element tristrips"), "triangle strips, which"),
     ("a.ply", "cut in a face", ply(CUBE, "<")[:-30], "the file ends in face 5 of 6"),
     ("a.ply", "cut in a vertex", ply(CUBE, ">")[: -6 * 17 - 20], "the file ends in vertex 7 of 8"),
-    ("a.ply", "text cut in a face", ply(MIXED)[:-3], "the file ends in face 9 of 9"),
+    ("a.ply", "text cut in a face", ply(MIXED)[:-3], "line 27: the file ends in face 9 of 9"),
     ("a.ply", "cut in the header", ply(CUBE)[:100], "the file ends in its header"),
     ("a.ply", "an unknown type", ply(CUBE).replace(b"float y", b"real y"), 'line 6: "real" is no type of PLY'),
     ("a.ply", "an unknown format", ply(CUBE).replace(b"ascii", b"utf8"), 'line 2: "utf8 1.0" is no format of PLY'),
@@ -145,6 +157,8 @@ REFUSED = [
     ("a.stl", "UTF-16", STL.decode().encode("utf-16"), "this is UTF-16 text"),
     ("a.stl", "words", b"once upon a time\n" * 9, "no STL file: no line of it begins a solid or a facet"),
     ("a.off", "cut in a face", off(CUBE)[:-12], "line 15: the file ends in face 5 of 6"),
+    ("a.off", "cut behind a face", off(CUBE)[:-10], "line 15: the file ends in face 6 of 6"),
+    ("a.off", "cut behind a vertex", b"OFF\n2 1 0\n0 0 0\n", "line 3: the file ends in vertex 2 of 2"),
     ("a.off", "fewer corners than said", off(CUBE).replace(b"4 3", b"6 3"), "line 12: a face of 6 corners is"),
     ("a.off", "four dimensions", off(CUBE, "4OFF\n{} {} 0\n"), "other than three coordinates are not read"),
     ("a.off", "binary", b"OFF BINARY\n\0\0\0\x08", "this is binary OFF, which is not read"),

@@ -1,11 +1,11 @@
 """A recording comes back from the results file as it was put in."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 
 from harness.store.database import Database
-from harness.store.recording import Recording, Surface, recording_of
+from harness.store.recording import NearLines, Recording, Surface, recording_of
 from harness.store.records import PointRow
 
 TRIANGLE = Surface(
@@ -46,8 +46,19 @@ def same(a, b):
             assert (one is None) == (other is None)
             assert one is None or (one.digest == other.digest and (one.vertices == other.vertices).all())
             assert one is None or (one.faces == other.faces).all()
+        elif field.name == "near":
+            assert (one is None) == (other is None)
+            assert one is None or all(np.array_equal(mine, theirs) for mine, theirs in zip(one, other, strict=True))
         else:
-            assert np.array_equal(one, other), field.name
+            assert np.array_equal(one, other, equal_nan=field.name == "hit_points" and one is not None), field.name
+
+
+def test_what_other_queries_add_comes_back_to_the_bit(tmp_path):
+    rng = np.random.default_rng(2)
+    near = NearLines(np.array([1, 1, 4]), np.array([[0, 1], [0, 2], [1, 2]]), rng.random((3, 2, 3)))
+    made = replace(recording(), near=near, hit_points=np.array([[0.1, 0.2, 1 / 3], [np.nan] * 3]))
+    kept(tmp_path / "r.db", made)
+    same(recording_of(tmp_path / "r.db", "x").recording, made)
 
 
 def test_what_was_recorded_comes_back_to_the_bit(tmp_path):

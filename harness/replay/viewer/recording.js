@@ -18,6 +18,7 @@ export class Recording {
     this.facts = text.facts;
     this.count = this.sizes.length;
     this.hits = this.hit_times.length;
+    this.lines = this.near_frames ? this.near_frames.length : 0; // between near bodies, of all frames
     this.largest = this.sizes.reduce((a, b) => Math.max(a, b), 0);
     this.legs = new Uint32Array(this.count); // of each body the leg that was looked up last
     this.spin_rates = Float64Array.from({ length: this.count }, (_, i) =>
@@ -105,6 +106,19 @@ export class Recording {
     if (direction > 0) return after < this.hits ? this.hit_times[after] : null;
     const before = upper(this.hits, (hit) => this.hit_times[hit] < time);
     return before > 0 ? this.hit_times[before - 1] : null;
+  }
+
+  /** The lines between near bodies of the frame that a time belongs to: the first, and that after the last. */
+  linesAt(time) {
+    const frame = this.frameAt(time);
+    const until = (end) => upper(this.lines, (line) => this.near_frames[line] < end);
+    return [until(frame), until(frame + 1)];
+  }
+
+  /** How far apart the ends of a line are, m. */
+  lengthOf(line) {
+    const [a, b] = [6 * line, 6 * line + 3];
+    return Math.hypot(...[0, 1, 2].map((axis) => this.near_points[b + axis] - this.near_points[a + axis]));
   }
 
   /** A hit in words: "3 – 22", or "7 – wall x+". */

@@ -3,12 +3,15 @@
 import { Camera, bodyUnder, controlCamera } from "./camera.js";
 import { Clock } from "./clock.js";
 import { HitList } from "./hitlist.js";
+import { cross, unit } from "./matrix.js";
 import { Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
 
 const SHOWN_FOR = 0.3; // s, at speed 1, for which a hit can be seen
+const RING = 32; // pieces of a circle
+const RING_SIZE = 0.16; // its radius, of the size of the smaller body
 const AHEAD = 400; // legs of a path drawn at the most
-const NAMES = ["page", "panel", "ink", "edge", "plain", "met", "wall", "chosen", "halo"];
+const NAMES = ["page", "panel", "ink", "edge", "plain", "met", "wall", "chosen", "halo", "near"];
 const by = (id) => document.getElementById(id);
 
 export class Replay {
@@ -39,6 +42,13 @@ export class Replay {
     by("time").max = recording.duration;
     by("time").step = "any";
     by("body").max = recording.count - 1;
+    by("key-near").hidden = !recording.near_frames;
+    by("key-ring").hidden = !recording.hit_points;
+    // where it was asked which bodies are near, an event is that two come near
+    for (const element of document.querySelectorAll("[data-near]")) {
+      element.dataset.plain ??= element.textContent;
+      element.textContent = recording.near_frames ? element.dataset.near : element.dataset.plain;
+    }
     for (const id of ["play", "before", "after", "back", "on", "time"]) by(id).disabled = !recording.duration;
     this.choose(this.chosen < recording.count ? this.chosen : -1);
     this._requestDraw();
@@ -174,7 +184,7 @@ export class Replay {
     if (stage) {
       stage.fit();
       recording.posesAt(clock.time, stage.positions, stage.quaternions);
-      const lines = this._mark(stage);
+      const lines = [...this._mark(stage), ...this._nearLines()];
       stage.draw(this._view(), this.colours, { halos: by("halos").checked, ...this._pathsToNextHit(lines) });
     }
     this.timeline.draw(clock.time, this.colours);
@@ -182,7 +192,29 @@ export class Replay {
     this._report();
   }
 
-  /** Mark the bodies of the latest hits, and give the lines between those that met. */
+  /** The lines between the nearest points of the frame that is shown. */
+  _nearLines() {
+    const { clock, recording } = this, [first, end] = recording.linesAt(clock.time), lines = [];
+    for (let line = first; line < end; line++)
+      lines.push([...recording.near_points.subarray(6 * line, 6 * line + 6), ...this.colours.near, 0.95]);
+    return lines;
+  }
+
+  /** A circle around the place where two bodies met, across the line of their centres at that time. */
+  _ring(hit, bright) {
+    const { recording } = this, bodies = [recording.hit_first[hit], recording.hit_second[hit]];
+    const middle = recording.hit_points.subarray(3 * hit, 3 * hit + 3);
+    const [a, b] = bodies.map((body) => recording.positionAt(body, recording.hit_times[hit]));
+    const [u, v] = across([0, 1, 2].map((axis) => b[axis] - a[axis]));
+    const radius = RING_SIZE * Math.min(...bodies.map((body) => recording.sizes[body]));
+    const places = Array.from({ length: RING + 1 }, (_, place) => {
+      const angle = (2 * Math.PI * place) / RING, c = radius * Math.cos(angle), s = radius * Math.sin(angle);
+      return [0, 1, 2].map((axis) => middle[axis] + c * u[axis] + s * v[axis]);
+    });
+    return places.slice(1).map((place, before) => [...places[before], ...place, ...this.colours.ink, bright]);
+  }
+
+  /** Mark the bodies of the latest hits, and give a ring where each met, or else a line between those that met. */
   _mark(stage) {
     const { clock, recording } = this, lines = [];
     stage.marks.fill(0);
@@ -193,7 +225,8 @@ export class Replay {
       const place = second >= 0 ? 0 : 1;
       for (const body of second >= 0 ? [first, second] : [first])
         stage.marks[3 * body + place] = Math.max(stage.marks[3 * body + place], bright);
-      if (second >= 0) {
+      if (second >= 0 && recording.hit_points) lines.push(...this._ring(hit, bright));
+      else if (second >= 0) {
         const ends = [first, second].flatMap((body) => [...stage.positions.subarray(3 * body, 3 * body + 3)]);
         lines.push([...ends, ...this.colours.met, 0.9 * bright]);
       }
@@ -248,7 +281,7 @@ export class Replay {
     by("time").setAttribute("aria-valuetext", `${clock.time.toFixed(3)} of ${recording.duration} seconds`);
     const now = this._hitsNow(), count = recording.hitsUntil(clock.time);
     const names = now.slice(0, 6).map((hit) => recording.nameOf(hit)).join(", ") + (now.length > 6 ? ", …" : "");
-    by("now").textContent = `${frame}t = ${clock.time.toFixed(3)} s · ${count} of ${recording.hits} hits` + (names ? ` · now ${names}` : "");
+    by("now").textContent = `${frame}t = ${clock.time.toFixed(3)} s · ${count} of ${recording.hits} ${recording.near_frames ? "events" : "hits"}` + (names ? ` · now ${names}` : "") + this._nearText();
     by("facts-of-body").hidden = chosen < 0;
     by("none").hidden = chosen >= 0;
     if (chosen >= 0) {
@@ -261,6 +294,19 @@ export class Replay {
     }
   }
 
+  /** How many near pairs are shown, and which is the nearest. */
+  _nearText() {
+    const { clock, recording } = this;
+    if (!recording.near_frames) return "";
+    const [first, end] = recording.linesAt(clock.time);
+    let nearest = first;
+    for (let line = first; line < end; line++) if (recording.lengthOf(line) < recording.lengthOf(nearest)) nearest = line;
+    const count = end - first, pairs = `${count} ${count === 1 ? "pair" : "pairs"} near but apart`;
+    if (!count) return ` · ${pairs}`;
+    const names = `${recording.near_first[nearest]} – ${recording.near_second[nearest]}`;
+    return ` · ${pairs}, the shortest line ${names}: ${recording.lengthOf(nearest).toPrecision(3)} m`;
+  }
+
   /** Write what is shown for screen readers. */
   _say(what = "") {
     const { clock, recording, chosen } = this;
@@ -268,4 +314,11 @@ export class Replay {
     const said = [what || (now ? `hits ${now}` : "no hit"), chosen >= 0 ? `body ${chosen} chosen` : ""].filter(Boolean);
     by("said").textContent = `${clock.time.toFixed(3)} s: ${said.join("; ")}`;
   }
+}
+
+/** Two unit vectors across a direction, and across each other. */
+function across(direction) {
+  const n = unit(direction), sizes = n.map(Math.abs), least = sizes.indexOf(Math.min(...sizes));
+  const u = unit(cross(n, [0, 1, 2].map((axis) => (axis === least ? 1 : 0))));
+  return [u, cross(n, u)];
 }

@@ -21,8 +21,9 @@ def scene_of(tradeoff: Tradeoff) -> str:
     first["shape"] = next((shape for shape in ("mesh", "hull", "sphere") if shape in shapes), None)
     if first.get("count") is None and isinstance(first.get("bodies"), list):
         first["count"] = len(first["bodies"])
-    asked = f"gaps up to {leaf_text(first.get('within'))}\u00a0m" if tradeoff.kind is GAPS else ""
-    return ", ".join(part for part in (scene_text(first), asked, tradeoff.place) if part)
+    if tradeoff.kind is not GAPS:
+        first["query"] = None  # times of hits are told by several queries
+    return ", ".join(part for part in (scene_text(first), tradeoff.place) if part)
 
 
 def knob_text(curve: Curve, setting: Setting) -> str:

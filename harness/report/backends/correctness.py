@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from harness.store.records import ComparisonRecord
-from harness.vocabulary import MethodName
+from harness.vocabulary import MethodName, Query
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class Correctness:
 def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
     """What comparisons have found, method by method.
 
-    A wrong verdict counts for its shape; a failure, and a verdict of a database that knows no shape of it, for every
-    shape of its comparison.
+    A wrong verdict counts for its shape and its query; a failure, and a verdict of a database that knows no shape of
+    it, for every shape and query of its comparison.
     """
     verdicts: Counter[MethodName] = Counter()
     wrong: Counter[MethodName] = Counter()
@@ -52,16 +53,24 @@ def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
         tallies = record.document["pairs"]
         for tally in tallies:
             for name in tally["backends"]:
-                method = MethodName.read(name, tally["shape"])
+                method = MethodName.read(name, tally["shape"], _query(tally))
                 verdicts[method] += tally["verdicts"]
                 if record.document.get("left_out"):
                     in_part.add(method)
         for case in record.document["cases"] + record.document["shared"] + record.document.get("findings", []):
-            shapes = {case["shape"]} if case.get("shape") else {tally["shape"] for tally in tallies}
-            for shape in sorted(shapes):
+            asked = {(tally["shape"], _query(tally)) for tally in tallies}
+            if case.get("shape"):
+                asked = {(case["shape"], _query(case))}
+            for shape, query in sorted(asked):
                 for name in case["wrong"].split(" and "):
-                    wrong[MethodName.read(name, shape)] += 1
+                    wrong[MethodName.read(name, shape, query)] += 1
     return Correctness(verdicts, wrong, frozenset(in_part))
+
+
+def _query(row: Mapping[str, Any]) -> Query:
+    """What was asked; a row names it where it is not collision."""
+    query: Query = row.get("query", "collision")
+    return query
 
 
 def newest(records: Sequence[ComparisonRecord]) -> list[ComparisonRecord]:

@@ -13,11 +13,13 @@ def sentences_of(row: Mapping[str, Any]) -> list[str]:
     small = row["minimised"] or row
     i, j = small["bodies"]
     proof, gap = small["certificate"], small["gap"]
-    state = f"overlap by {number(-gap)} m" if proof["touching"] else f"are {number(gap)} m apart"
-    says = "do not touch" if proof["touching"] else "touch"
+    apart = number(gap) if "query" not in row else _digits(gap)
+    state = f"overlap by {number(-gap)} m" if proof["touching"] else f"are {apart} m apart"
     verb = "say" if " and " in row["wrong"] else "says"
+    when = f" {_digits(small['moment'])} s after the start of the frame" if "moment" in small else ""
     sentences = [
-        f"Bodies {i} and {j} {state}; {row['wrong']} {verb} that they {says}.",
+        f"Bodies {i} and {j} {state}{when}; {row['wrong']} {verb} that they {_said(small)}.",
+        *([f"Asked: {row['query']}{_within(row)}."] if "query" in row else []),
         proof_text(proof, (i, j)),
         f"Seen at {row['certificate']['pose']} (question {row['certificate']['call']} of its scene), "
         f"{' against '.join(row['backends'])}; there the gap was {number(row['gap'])} m.",
@@ -25,8 +27,30 @@ def sentences_of(row: Mapping[str, Any]) -> list[str]:
     if row["minimised"] is None:
         sentences.append("Asked once and afresh, the backend is right: it depends on what was asked before.")
     else:
-        sentences.append(f"{row['minimised_to']} bodies at rest show it by themselves.")
+        how = "in one frame" if "moment" in row else "at rest"
+        sentences.append(f"{row['minimised_to']} bodies {how} show it by themselves.")
     return sentences
+
+
+def _said(row: Mapping[str, Any]) -> str:
+    """What was told of two bodies, to follow "says that they"."""
+    query, told = row.get("query", "collision"), row.get("told")
+    if query == "collision":
+        return "do not touch" if row["certificate"]["touching"] else "touch"
+    if query == "impact":
+        return "do not begin to touch in it" if told is None else f"begin to touch at {_digits(told)} s"
+    if told is None:
+        return "are farther apart than was asked about"
+    return "are near" if query == "tolerance" else f"are {_digits(told)} m apart"
+
+
+def _digits(value: float) -> str:
+    """With so many digits that two numbers of which one is wrong look different."""
+    return f"{value:.9g}".replace("-", "−")
+
+
+def _within(row: Mapping[str, Any]) -> str:
+    return f" within {number(row['within'])} m" if "within" in row else ""
 
 
 def proof_text(proof: Mapping[str, Any], bodies: tuple[int, int]) -> str:
@@ -46,6 +70,14 @@ def proof_text(proof: Mapping[str, Any], bodies: tuple[int, int]) -> str:
         return (
             f"Proof: the point ({point}) m lies in both; it is a mean of {corners} with positive weights, equal in "
             f"exact arithmetic.{between}"
+        )
+    if proof["kind"] == "nearest points and separating planes":
+        corners = f"{_vertices(len(proof['first']))} of body {i} and {_vertices(len(proof['second']))} of body {j}"
+        planes = f"{proof['planes']} {'plane keeps' if proof['planes'] == 1 else 'planes keep'}"
+        return (
+            f"Proof: two points, means of {corners} with positive weights, are {number(proof['upper'])} m apart, and "
+            f"{planes} all parts of one body at least {number(proof['lower'])} m from all parts of the other, both in "
+            "exact arithmetic."
         )
     sign = "not more" if proof["touching"] else "more"
     return (

@@ -41,6 +41,7 @@ def by_experiment(compared: Comparisons) -> Table:
                 words(tally["experiment"]),
                 words(f"{a}, {b}"),
                 words(tally["shape"]),
+                words(tally.get("query", "collision")),
                 *(_count(tally[name]) for name in ("poses", "verdicts", "agree", *KINDS[:3])),
                 _count(tally["real"], bad=True),
                 _count(crashes, bad=True),
@@ -48,13 +49,14 @@ def by_experiment(compared: Comparisons) -> Table:
         )
     columns = (
         Column("Experiment", numeric=False), Column("Backends", numeric=False), Column("Shape", numeric=False),
-        Column("poses"), Column("verdicts"), Column("agree"), Column("undecided"), Column("containment"),
-        Column("approximation"), Column("real"), Column("crashes"),
+        Column("Query", numeric=False), Column("poses"), Column("verdicts"), Column("agree"), Column("undecided"),
+        Column("containment"), Column("approximation"), Column("real"), Column("crashes"),
     )  # fmt: skip
     note = (
-        "Poses as bodies fly through each other, and pairs put where verdicts are hard. Of a method that computes "
-        "events, a verdict is a contact that begins while bodies approach: when it does, or that it does, is held "
-        "against exact arithmetic."
+        "Poses as bodies fly through each other, and pairs put where verdicts are hard; of query impact, frames. A "
+        "verdict is whether a pair is reported, and of distance and impact also its gap or its time. Of a method that "
+        "computes events, a verdict is a contact that begins while bodies approach: when it does, or that it does, is "
+        "held against exact arithmetic."
     )
     return Table("By experiment", note, columns, tuple(rows))
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from harness.report.point import MeasuredPoint
 from harness.report.quantity import quantity
 from harness.report.ranking import Ranked, rank, unranked
 from harness.report.sentences.ratio import ratio_text
@@ -44,7 +43,7 @@ def leader_sentences(arrangement: Arrangement) -> list[Markup]:
 
 def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
     best, tied = ranked[0], [entry for entry in ranked if entry.tied]
-    where = Markup("For {}: ").format(_scene(arrangement, best.point, panel, x))
+    where = Markup("For {}: ").format(_scene(arrangement, ranked, panel, x))
     why_not = unranked(entry.told for entry in ranked)
     if why_not:
         return where + _medians(ranked, metric) + Markup(": {}.").format(why_not)
@@ -89,9 +88,13 @@ def _medians(ranked: Sequence[Ranked], metric: str) -> Markup:
     return Markup("{} is {}").format(metric_title(metric), listed)
 
 
-def _scene(arrangement: Arrangement, point: MeasuredPoint, panel: str, x: object) -> str:
-    """The scene of a point, and what else of it is swept."""
-    parts = [scene_text(point.parameters)]
+def _scene(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object) -> str:
+    """The scene of methods that are ranked, what they are asked if that is one thing, and what else of it is swept."""
+    parameters = dict(ranked[0].point.parameters)
+    several = len({entry.point.parameters.get("query") for entry in ranked}) > 1
+    if several or "query" in (arrangement.x, arrangement.panel_leaf):
+        parameters["query"] = None
+    parts = [scene_text(parameters)]
     if arrangement.x and x is not None and arrangement.x not in SCENE_LEAVES:
         parts.append(leaf_label(arrangement.x, x))
     if panel and arrangement.panel_leaf not in SCENE_LEAVES:

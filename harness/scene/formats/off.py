@@ -40,8 +40,8 @@ class _Reader:
     """Reads the lines of a file, blocks of them at once where they hold nothing but numbers."""
 
     def __init__(self, text: bytes) -> None:
-        self._text = text + b"\n"
         self._whole = text.endswith(b"\n")  # if not, the last line may have been cut
+        self._text = text if self._whole else text + b"\n"
         self._place, self._line = 0, 0  # where the next line begins, and the number of the line before it
         self._coordinates, self._corners, self._lengths = array("d"), array("q"), array("q")
         self._vertex_lines, self._face_lines = array("q"), array("q")
@@ -96,7 +96,7 @@ class _Reader:
             self._place, self._line = end + 1, self._line + 1
             if words:
                 return words
-        raise InputError(f"the file ends in {where}")
+        raise InputError(f"line {self._line}: the file ends in {where}")
 
     def _counts(self) -> tuple[int, int]:
         """How many vertices and faces the header announces."""

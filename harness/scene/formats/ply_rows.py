@@ -57,6 +57,11 @@ class Rows(ABC):
         """Tells the line of the file in which a row has its number or list; None for a binary file."""
         return None
 
+    @property
+    def end(self) -> str:
+        """Where the file ends, as a message begins; nothing for a binary file."""
+        return ""
+
     def columns(self, element: Element, names: tuple[str, ...]) -> list[Column]:
         """Some of an element's properties; with that, its rows are passed.
 
@@ -67,7 +72,8 @@ class Rows(ABC):
         """
         if not element.rows or not element.properties:
             return [Column("f8", *np.empty((2, 0), np.int64)) for _ in names]
-        return self._even(element, names) or self._uneven(element, names)
+        even = self._even(element, names)
+        return self._uneven(element, names) if even is None else even
 
     def values(self, column: Column) -> NDArray[np.generic]:
         """All numbers of a column, row by row."""
@@ -114,7 +120,8 @@ class Rows(ABC):
             try:
                 place = self._row(place, steps)
             except IndexError:
-                raise InputError(f"the file ends in {element.name} {row + 1} of {element.rows}") from None
+                told = f"the file ends in {element.name} {row + 1} of {element.rows}"
+                raise InputError(f"{self.end}{told}") from None
         self._place = place
         kinds = {wanted.name: wanted.kind for wanted in element.properties}
         return [Column(kinds[name], *np.array(found[name], np.int64)) for name in names]
@@ -187,3 +194,7 @@ class TextRows(Rows):
 
     def line_of(self, column: Column) -> Callable[[int], int] | None:
         return lambda row: self._numbers.line(int(column.starts[row]))
+
+    @property
+    def end(self) -> str:
+        return f"line {self._numbers.line(self._size)}: "

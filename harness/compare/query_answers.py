@@ -1,0 +1,71 @@
+"""What a method tells of each pair when it is asked a query other than collision, at given poses or in given frames."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TypeAlias
+
+from harness.backends.protocol import Backend
+from harness.compare.poses import Frame, Pose
+from harness.compare.question import Question
+from harness.methods.at_poses import Queried
+from harness.methods.impact_times import FrameMotion
+from harness.methods.registry import method_of
+from harness.scene.scene import Scene
+from harness.vocabulary import MethodName, Shape
+
+Told: TypeAlias = dict[tuple[int, int], float]
+"""By pair i < j: the gap, m, of "distance"; s after the start of the frame, of "impact"; 0 where no number is asked."""
+
+
+@cache
+def make_ready(name: MethodName) -> None:
+    """Compile the kernels of a method's query here, so that no process which is forked from this one has to."""
+    if name.query != "collision" and name.kernels:
+        for _, compile_kernels in method_of(name, within=0.0).warm_ups():
+            compile_kernels()
+
+
+class QueryAnswers:
+    """A method in the process that asks it.
+
+    Parameters
+    ----------
+    name : MethodName, of the query
+    question : how the query is set
+    """
+
+    def __init__(self, name: MethodName, question: Question) -> None:
+        self._name, self._asked = name, Queried(name, question.tolerance, question.within)
+        self.shapes = self._asked.shapes
+        self._last = 0
+
+    @property
+    def library(self) -> Backend | None:
+        """The backend that answers; None where kernels of this program do."""
+        return None if self._name.kernels else self._asked.backend
+
+    def tolerance(self, shape: Shape) -> float:
+        """Of size, by how much it may be off."""
+        return self._asked.tolerance(shape)
+
+    def load(self, scene: Scene) -> None:
+        """Hold a scene."""
+        self._asked.load(scene)
+        self._scene = scene
+
+    def told(self, pose: Pose) -> Told:
+        """What it tells of every pair that it reports."""
+        if isinstance(pose, Frame):
+            motion, self._last = self._motion(pose), 0
+            pairs, values = self._asked.impacts(motion, pose.duration)
+            self._last = pose.number  # not of a frame that failed: nothing can go on from there
+        else:
+            pairs, values, _ = self._asked.near(pose.positions, pose.quaternions)
+        numbers = [0.0] * len(pairs) if self._name.query == "tolerance" else values.tolist()
+        return {(i, j): number for (i, j), number in zip(pairs.tolist(), numbers, strict=True)}
+
+    def _motion(self, frame: Frame) -> FrameMotion:
+        follows = 0 < self._last == frame.number - 1
+        middle = frame.at(self._scene, 0.5 * frame.duration).positions
+        return FrameMotion(frame.positions, frame.quaternions, middle, frame.velocities, frame.spins, first=not follows)
