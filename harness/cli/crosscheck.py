@@ -234,7 +234,7 @@ def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent, query: Qu
     for (shape, _, question), point in random.items():
         size = point.scene.size
         for pair in _both(files_of(experiment, point, meshes).meshes):
-            mean = fmean(mesh.diameter for mesh in pair) if size.kind == "native" else size.mean
+            mean = fmean(mesh.diameter for mesh in pair) if size.is_native else size.mean
             yield from hard_questions(shape, pair, extent.every, question, size=mean)
 
 

@@ -91,7 +91,7 @@ def native_sizes_have_a_mesh(values: Values) -> Conflict | None:
     if values["mesh"] is not None:
         return None
     bodies = values["bodies"]
-    native = values["size"].kind == "native" if bodies is None else any(
+    native = values["size"].is_native if bodies is None else any(
         body.size == "native" and body.mesh is None for body in bodies
     )  # fmt: skip
     if native:

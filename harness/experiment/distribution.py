@@ -84,6 +84,11 @@ class Distribution(
         return "choice" if isinstance(self.root, Choice) else "constant"
 
     @property
+    def is_native(self) -> bool:
+        """Whether the meshes say it, each in its file."""
+        return self.kind == NATIVE
+
+    @property
     def values(self) -> tuple[float, ...]:
         """The one value, the low and the high one, or all that can be chosen; none where the meshes say it."""
         if isinstance(self.root, str):

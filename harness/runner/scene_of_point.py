@@ -93,7 +93,7 @@ def mean_size(point: Point, files: SceneFiles) -> float:
     scene = point.scene
     if scene.bodies is not None:
         return float(np.mean(_explicit_sizes(point, files, _mesh_numbers(point, len(scene.bodies)))))
-    if scene.size.kind == "native":
+    if scene.size.is_native:
         chosen = [files.meshes[scene.mesh_names.index(name)].diameter for name in scene.mesh_choice]
         return float(np.mean(chosen))
     return float(scene.size.mean)
@@ -138,7 +138,7 @@ def _mesh_numbers(point: Point, count: int) -> Ints:
 
 def _sizes(point: Point, files: SceneFiles, mesh_of: Ints) -> Floats:
     """(n,) m, of random bodies."""
-    if point.scene.size.kind == "native":
+    if point.scene.size.is_native:
         return _diameters(files.meshes)[mesh_of]
     return point.scene.size.sample(_streams(point)["sizes"], len(mesh_of))
 
