@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
+from harness.broadphase.pairs import LARGEST, NO_PLACES
 from harness.kernel import kernel
 
 Levels = NDArray[np.void]
 Level = Any  # one record of Levels, whose fields mypy does not know
+Point = tuple[float, float, float]
 
 LEVEL = np.dtype(
     [
@@ -50,19 +52,14 @@ class Block(NamedTuple):
 
 @kernel
 def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
-    """Spread each level's lattice over the part of the box where bodies are.
+    """Spread each level's lattice over the part of the box where bodies are; all positions must be finite.
 
     Bodies beyond the walls belong to the border cells, so that one that has shot far out does not thin out the lattice.
     """
-    low_x, low_y, low_z = half[0], half[1], half[2]
-    high_x, high_y, high_z = -half[0], -half[1], -half[2]
-    for i in range(len(positions)):
-        x, y, z = positions[i, 0], positions[i, 1], positions[i, 2]
-        low_x, low_y, low_z = min(low_x, x), min(low_y, y), min(low_z, z)
-        high_x, high_y, high_z = max(high_x, x), max(high_y, y), max(high_z, z)
-    x, wide = within_box(low_x, high_x, half[0])
-    y, deep = within_box(low_y, high_y, half[1])
-    z, tall = within_box(low_z, high_z, half[2])
+    low, high = bounds(positions, half)
+    x, wide = within_box(low[0], high[0], half[0])
+    y, deep = within_box(low[1], high[1], half[1])
+    z, tall = within_box(low[2], high[2], half[2])
     first = 0
     for index in range(len(levels)):
         level = levels[index]
@@ -70,6 +67,25 @@ def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
         fit_cells(level, wide, deep, tall)
         level.first = first
         first += level.cells
+
+
+@kernel
+def bounds(positions: Floats, half: Floats) -> tuple[Point, Point]:
+    """Where bodies begin and where they end along each axis, m, of those beyond a wall only as seen from within.
+
+    What `require_finite` refuses is refused here too, as a million positions take long to read another time.
+    """
+    low_x, low_y, low_z = half[0], half[1], half[2]
+    high_x, high_y, high_z = -half[0], -half[1], -half[2]
+    refused = False
+    for i in range(len(positions)):
+        x, y, z = positions[i, 0], positions[i, 1], positions[i, 2]
+        refused |= not ((abs(x) <= LARGEST) & (abs(y) <= LARGEST) & (abs(z) <= LARGEST))
+        low_x, low_y, low_z = min(low_x, x), min(low_y, y), min(low_z, z)
+        high_x, high_y, high_z = max(high_x, x), max(high_y, y), max(high_z, z)
+    if refused:
+        raise ValueError(NO_PLACES)
+    return (low_x, low_y, low_z), (high_x, high_y, high_z)
 
 
 @kernel
@@ -114,13 +130,49 @@ def cells_along(length: float, edge: float) -> float:
     return max(1.0, math.floor(length / edge))
 
 
+class Lattice(NamedTuple):
+    """The numbers of a level that lead from a point to a cell; see LEVEL."""
+
+    first: int
+    row: int
+    plane: int
+    low_x: float
+    low_y: float
+    low_z: float
+    last_x: float
+    last_y: float
+    last_z: float
+    scale_x: float
+    scale_y: float
+    scale_z: float
+
+
 @kernel
-def cell_at(level: Level, x: float, y: float, z: float) -> int:
-    """The level's cell at a point, m; beyond the border, the nearest."""
-    ix = cell_along(x, level.low_x, level.scale_x, level.last_x)
-    iy = cell_along(y, level.low_y, level.scale_y, level.last_y)
-    iz = cell_along(z, level.low_z, level.scale_z, level.last_z)
-    return int(level.first + ix * level.plane + iy * level.row + iz)
+def lattice_of(level: Level) -> Lattice:
+    """The lattice of a level, in registers: a loop that writes to memory need not read it for every body."""
+    return Lattice(
+        level.first,
+        level.row,
+        level.plane,
+        level.low_x,
+        level.low_y,
+        level.low_z,
+        level.last_x,
+        level.last_y,
+        level.last_z,
+        level.scale_x,
+        level.scale_y,
+        level.scale_z,
+    )
+
+
+@kernel
+def cell_in(lattice: Lattice, x: float, y: float, z: float) -> int:
+    """The cell of a lattice at a point, m; beyond the border, the nearest."""
+    ix = cell_along(x, lattice.low_x, lattice.scale_x, lattice.last_x)
+    iy = cell_along(y, lattice.low_y, lattice.scale_y, lattice.last_y)
+    iz = cell_along(z, lattice.low_z, lattice.scale_z, lattice.last_z)
+    return lattice.first + ix * lattice.plane + iy * lattice.row + iz
 
 
 @kernel

@@ -19,6 +19,8 @@ Keys = NDArray[np.int64]  # (k,) i << 32 | j of pairs
 # Squares of radii, and of distances as small, must neither overflow nor vanish.
 SMALLEST, LARGEST = 1e-150, 1e150
 
+NO_PLACES = "positions must be finite, and within 1e150 m"
+
 NEARLY = 1.0 + 1e-6
 """Spheres whose distance squared exceeds their reach squared by this factor do not touch, whatever is rounded."""
 
@@ -71,7 +73,7 @@ def require_finite(positions: Floats) -> None:
         for axis in range(3):
             refused += not abs(positions[i, axis]) <= LARGEST
     if refused > 0:
-        raise ValueError("positions must be finite, and within 1e150 m")
+        raise ValueError(NO_PLACES)
 
 
 def checked_radii(radii: ArrayLike) -> Floats:

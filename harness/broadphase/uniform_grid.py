@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
 from harness.broadphase import cells
+from harness.broadphase.cell_order import ROW, Cells
 from harness.broadphase.lanes import LANES
 from harness.broadphase.levels import LEVEL, Levels
 from harness.broadphase.pairs import checked_positions, checked_radii, unpack
@@ -37,17 +38,16 @@ class UniformGrid:
         levels = plan_levels(self.radii[members], level[members])
         self._half = np.array(box.half, np.float64)
         self._arrays: cells.Arrays = (
+            self.radii,
             members.astype(np.int32),
             levels,
             np.empty(int(levels["budget"].sum()) + 1, np.int32),
             np.empty(count, np.int32),
-            np.empty((count, 4)),
+            np.empty(count, ROW),
             np.empty((count, 2), np.int32),
-            np.zeros((count, 4)),
             np.zeros((3, count + LANES)),
         )
-        self._cells = cells.Cells(*self._arrays)
-        self._cells.spheres[:, 3] = self.radii[members]
+        self._cells = Cells(*self._arrays)
         self._keys = np.empty(count + 1, np.int64)
 
     def size_classes(self) -> NDArray[np.int64]:
@@ -77,7 +77,7 @@ class UniformGrid:
         At most 8, as a cell is never smaller than a body. The lattice ends with the outermost centres, and what sticks
         out is in no cell.
         """
-        overlapped = cells.count_overlapped(self._cells.levels, self._cells.spheres)
+        overlapped = cells.count_overlapped(self._arrays)
         return overlapped.most, overlapped.total / max(1, len(self.radii))
 
 

@@ -6,8 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.broadphase.brute_force import BruteForce
+from harness.broadphase.cell_order import MOST_BUCKETS, SMALLEST_BUCKET
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.broadphase.pairs import BroadPhase
+from harness.broadphase.sap import SweepAndPrune
 from harness.broadphase.uniform_grid import UniformGrid
 from harness.scene.box import Box
 
@@ -128,6 +130,18 @@ def test_two_thousand_bodies_in_one_place_are_two_million_pairs(method):
     expected = np.stack(np.triu_indices(2000, 1), axis=1)
     for _ in range(2):  # with the first frame's room, and with its own
         assert np.array_equal(detector.close_pairs(np.full((2000, 3), 0.25)), expected)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 4.0])
+def test_more_cells_than_the_smallest_buckets_hold_are_sorted_as_well(ratio):
+    rng = np.random.default_rng(23)
+    radii = rng.choice([0.5, 0.5 / ratio], 150_000)
+    half = np.full(3, 60.0)
+    positions = rng.uniform(-1, 1, (150_000, 3)) * half
+    grid = make("hierarchical grid", radii, half)
+    pairs = grid.close_pairs(positions)
+    assert grid.cell_count > MOST_BUCKETS << SMALLEST_BUCKET
+    assert np.array_equal(pairs, SweepAndPrune(radii, Box(half)).close_pairs(positions))
 
 
 @pytest.mark.parametrize("method", METHODS)
