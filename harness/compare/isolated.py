@@ -25,7 +25,7 @@ from harness.backends.protocol import (
     own_hulls_tolerance,
     queries,
 )
-from harness.child_process import Channel, Child
+from harness.child_process import Channel, Child, guarded
 from harness.compare.own_gaps import OWN, OwnGaps
 from harness.compare.poses import Frame, Pose
 from harness.compare.query_answers import QueryAnswers, Told
@@ -195,7 +195,7 @@ class Isolated:
         return None
 
     def _start(self) -> Facts:
-        self._child = Child.fork(partial(_serve, self.name, self._scene, self.question))
+        self._child = Child.fork(guarded(partial(_serve, self.name, self._scene, self.question)))
         try:
             answer = self._child.receive(_LOADING * self._timeout)
             if answer == "timeout":
