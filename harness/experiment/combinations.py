@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.experiment.messages import listed
-from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, QUERIES, Query, algorithms_of
+from harness.vocabulary import ALGORITHMS, NATIVE, NEAR_QUERIES, QUERIES, Query, algorithms_of
 
 Values = Mapping[str, Any]
 
@@ -92,7 +92,7 @@ def native_sizes_have_a_mesh(values: Values) -> Conflict | None:
         return None
     bodies = values["bodies"]
     native = values["size"].is_native if bodies is None else any(
-        body.size == "native" and body.mesh is None for body in bodies
+        body.size == NATIVE and body.mesh is None for body in bodies
     )  # fmt: skip
     if native:
         return Conflict("size native is that of a mesh, and there is none; mesh is {}", ("size", "mesh"))

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field
 
 from harness.experiment.messages import shown
 from harness.experiment.number import Number, holding, rising, wrong
+from harness.vocabulary import NATIVE, NativeSize
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,10 +35,6 @@ class Choice(BaseModel):
     choice: tuple[Number, ...] = Field(min_length=1, description="[value, value, ...]")
 
 
-NATIVE = "native"
-"""The size of a body whose mesh is as large as its file says, a unit of the file taken for a metre."""
-
-
 def _kind(value: Any) -> str | None:
     if isinstance(value, Uniform) or (isinstance(value, Mapping) and "uniform" in value):
         return "uniform"
@@ -54,7 +51,7 @@ class Distribution(
             Annotated[Number, Tag("constant")]
             | Annotated[Uniform, Tag("uniform")]
             | Annotated[Choice, Tag("choice")]
-            | Annotated[Literal["native"], Tag("native")],
+            | Annotated[NativeSize, Tag(NATIVE)],
             Discriminator(
                 _kind,
                 custom_error_type="said",
@@ -75,10 +72,10 @@ class Distribution(
     model_config = ConfigDict(frozen=True)
 
     @property
-    def kind(self) -> Literal["constant", "uniform", "choice", "native"]:
+    def kind(self) -> Literal["constant", "uniform", "choice"] | NativeSize:
         """Which of the four it is."""
-        if self.root == "native":
-            return "native"
+        if self.root == NATIVE:
+            return NATIVE
         if isinstance(self.root, Uniform):
             return "uniform"
         return "choice" if isinstance(self.root, Choice) else "constant"

@@ -8,14 +8,16 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from harness.experiment.combinations import ENGINE, MOTION, SCENE, Rule, conflicts
-from harness.experiment.distribution import NATIVE, Distribution, NonNegativeDistribution, PositiveDistribution
+from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
 from harness.experiment.number import Bytes, Number, Switch, Vector, Whole, holding, wrong
 from harness.vocabulary import (
     DEFAULT_ALGORITHM,
+    NATIVE,
     REFERENCE_ALGORITHM,
     Algorithm,
     Family,
     FamilyQuery,
+    NativeSize,
     Query,
     ReferenceAlgorithm,
     Response,
@@ -71,7 +73,7 @@ MeshFiles = Annotated[
     Discriminator(_mesh_kind),
 ]
 BodySize = Annotated[
-    Annotated[Positive, Tag("constant")] | Annotated[Literal["native"], Tag("native")], Discriminator(_size_kind)
+    Annotated[Positive, Tag("constant")] | Annotated[NativeSize, Tag(NATIVE)], Discriminator(_size_kind)
 ]
 
 
