@@ -167,7 +167,7 @@ def run(experiment: Experiment) -> pd.DataFrame:
     from harness.runner.sweep import run
     from harness.scene.mesh_child import open_all
 
-    return run(experiment, open_all(experiment.mesh_paths.values()))
+    return run(experiment, open_all(experiment.mesh_paths.values(), experiment.poses_paths.values()))
 
 
 def results(db: str | Path = "results/results.db") -> pd.DataFrame:
@@ -188,4 +188,4 @@ def trace(experiment: Experiment) -> Trace:
     from harness.runner.sweep import trace
     from harness.scene.mesh_child import open_all
 
-    return trace(experiment, open_all(experiment.mesh_paths.values()))
+    return trace(experiment, open_all(experiment.mesh_paths.values(), experiment.poses_paths.values()))

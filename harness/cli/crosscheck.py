@@ -31,6 +31,7 @@ from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
+from harness.runner.point import law_of
 from harness.runner.scene_of_point import SceneSizeError, build_scene
 from harness.runner.servers import files_of
 from harness.scene.launch import PlacementError
@@ -68,12 +69,12 @@ class Extent:
     every: int
     flown: int | None
 
-    def frames(self, point: Point, bodies: int) -> int | None:
-        """The last frame of a scene to ask about; None to leave it out."""
+    def frames(self, frames: int, bodies: int) -> int | None:
+        """The last frame of a scene to ask about, of all that it has; None to leave it out."""
         if self.verdicts is None:
-            return point.motion.frames
+            return frames
         most = self.verdicts // (bodies * (bodies - 1) // 2) - 1
-        return min(point.motion.frames, most) if most > 0 else None
+        return min(frames, most) if most > 0 else None
 
 
 WHOLE = Extent(verdicts=None, every=1, flown=None)
@@ -216,6 +217,8 @@ def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, b
     whole = Comparison()
     points = [point for point in experiment.points if point.engine.query == "collision"]
     for point, scene, frames in _motions(experiment, meshes, extent, points, by_tolerance=True):
+        if scene.poses is not None:
+            raise InputError(f"{experiment.path}: {name} computes events, and poses are recorded; leave it out")
         dt, tolerance = point.motion.dt, point.engine.tolerance
         whole.add(audit_events(scene, name, max(1, frames // budget.every), dt, tolerance, budget))
     return whole
@@ -270,12 +273,12 @@ def _motions(
     seen = set()
     for point in points:
         asked = (by_tolerance and point.engine.tolerance, by_question and _question(point))
-        moved = repr((point.scene, point.motion.duration, point.motion.dt, *asked))
+        moved = repr((point.scene, point.motion.poses, point.motion.duration, point.motion.dt, *asked))
         if moved in seen:
             continue
         seen.add(moved)
         scene = _scene(experiment, point, meshes)
-        frames = None if scene is None else extent.frames(point, len(scene.bodies))
+        frames = None if scene is None else extent.frames(law_of(point, scene).frames, len(scene.bodies))
         if scene is not None and frames is not None:
             yield point, scene, frames
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from harness.arrays import Floats
 from harness.compare.question import COLLISION, Question
 from harness.motion.kinematics import Trajectory
+from harness.motion.recorded_motion import trajectory_of
 from harness.scene.scene import Scene
 
 
@@ -82,7 +83,7 @@ class PoseSet:
 
 
 def flown(scene: Scene, frames: int, dt: float, question: Question = COLLISION) -> PoseSet:
-    """Bodies that fly through each other, from the start to frame `frames`, `dt` (s) apart.
+    """Bodies that fly through each other, from the start to frame `frames`, `dt` (s) apart, or as they were recorded.
 
     With a response no two bodies would ever overlap at a frame.
     """
@@ -91,15 +92,21 @@ def flown(scene: Scene, frames: int, dt: float, question: Question = COLLISION) 
 
 
 def _motions(scene: Scene, frames: int, dt: float) -> Iterator[Frame]:
-    spins = scene.bodies.spins
+    trajectory = trajectory_of(scene, folded=True, turning=False)
     for number, pose in enumerate(_poses(scene, frames - 1, dt), 1):
-        trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=False)
-        velocities = trajectory.velocities_at((number - 1) * dt)
-        yield Frame(f"frame {number}", pose.positions, pose.quaternions, velocities, spins, dt, number)
+        start = _time(scene, number - 1, dt)
+        motion = trajectory.velocities_at(start), trajectory.spins_at(start)
+        duration = dt if scene.poses is None else _time(scene, number, dt) - start
+        yield Frame(f"frame {number}", pose.positions, pose.quaternions, *motion, duration, number)
 
 
 def _poses(scene: Scene, frames: int, dt: float) -> Iterator[Pose]:
-    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
+    trajectory = trajectory_of(scene, folded=True, turning=scene.shape != "sphere")
     for frame in range(frames + 1):
-        trajectory.move_to(frame * dt)
+        trajectory.move_to(_time(scene, frame, dt))
         yield Pose(f"frame {frame}", trajectory.positions.copy(), trajectory.quaternions.copy())
+
+
+def _time(scene: Scene, frame: int, dt: float) -> float:
+    """s"""
+    return frame * dt if scene.poses is None else float(scene.poses.time[frame])

@@ -68,4 +68,5 @@ class QueryAnswers:
     def _motion(self, frame: Frame) -> FrameMotion:
         follows = 0 < self._last == frame.number - 1
         middle = frame.at(self._scene, 0.5 * frame.duration).positions
-        return FrameMotion(frame.positions, frame.quaternions, middle, frame.velocities, frame.spins, first=not follows)
+        motion = frame.velocities, frame.spins
+        return FrameMotion(frame.positions, frame.quaternions, middle, *motion, not follows, frame.duration)

@@ -71,10 +71,24 @@ def has_count_or_bodies(values: Values) -> Conflict | None:
 
 def has_one_box(values: Values) -> Conflict | None:
     """The box has given sides, or sides that follow from the bodies' size."""
+    if values["poses"] is not None:
+        return None
     if values["box"] is None and values["box_ratio"] is None:
         return Conflict("a scene needs box ([x, y, z] in m) or box_ratio ((mean size / side)²)", ("box", "box_ratio"))
     if values["box"] is not None and values["box_ratio"] is not None:
         return Conflict("box and box_ratio exclude each other; give one of them", ("box_ratio", "box"))
+    return None
+
+
+def bodies_are_somewhere(values: Values) -> Conflict | None:
+    """A body that is given one by one has a place, or recorded poses have it."""
+    recorded = values["poses"] is not None
+    for number, body in enumerate(values["bodies"] or ()):
+        if body.position is None and not recorded:
+            return Conflict(f"bodies[{number}] needs a position, [x, y, z] in m", ("bodies",))
+        if recorded and (body.position is not None or any((*body.velocity, *body.spin))):
+            message = f"poses say where bodies are; bodies[{number}] can have no position, velocity or spin of its own"
+            return Conflict(message, ("poses", "bodies"))
     return None
 
 
@@ -186,6 +200,14 @@ def backend_answers_the_query(values: Values) -> Conflict | None:
     return None
 
 
+def poses_are_frames(values: Values) -> Conflict | None:
+    """Recorded motion is what it is: no event of it can be computed ahead, or change it."""
+    if values["poses"] is not None and not ALGORITHMS[values["algorithm"]].stepped:
+        message = "recorded poses are looked at frame by frame; algorithm {} has no use of them"
+        return Conflict(message, ("poses", "algorithm"), excludable=True)
+    return None
+
+
 def events_ignore_no_pair(values: Values) -> Conflict | None:
     """The search for events knows all pairs or none."""
     if values["ignore"] and not ALGORITHMS[values["algorithm"]].stepped:
@@ -197,7 +219,7 @@ def events_ignore_no_pair(values: Values) -> Conflict | None:
 def bodies_pass_through(values: Values) -> Conflict | None:
     """A response answers pairs that touch; without one the motion is the same for every method and every query."""
     query, response = values["query"], values["response"]
-    if query != "collision" and response != "none":
+    if query != "collision" and response != "none" and values["poses"] is None:
         message = f"query {query} needs response none, for only pairs that touch can be answered; response is {{}}"
         return Conflict(message, ("query", "response"), excludable=True)
     return None
@@ -224,5 +246,7 @@ POINT: tuple[Rule, ...] = (
     backend_has_the_shape,
     backend_has_gaps_of_the_shape,
     events_ignore_no_pair,
+    poses_are_frames,
+    bodies_are_somewhere,
     bodies_pass_through,
 )

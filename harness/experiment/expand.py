@@ -20,7 +20,7 @@ from harness.experiment.leaves import INSTEAD_OF, LEAVES, SECTIONS, identity
 from harness.experiment.messages import flow, listed
 from harness.experiment.problems import FileProblems, Origin
 from harness.experiment.schema import MeasureSpec, ReferenceSpec
-from harness.vocabulary import Shape
+from harness.vocabulary import NEAR_QUERIES, Shape
 
 # All points are held in memory, a few kilobytes each.
 MOST_POINTS = 10**5
@@ -28,6 +28,8 @@ MOST_POINTS = 10**5
 MOST_COMPARISONS = 10**7
 
 Resolved = dict[str, LeafValue]
+# What recorded poses say, or have no use of.
+TOLD_BY_POSES = ("duration", "dt", "response", "restitution", "speed", "spin", "overlap")
 _EXACT_FIRST: tuple[Shape, ...] = ("mesh", "hull", "sphere")
 DEFAULTS: Resolved = {name: LeafValue(leaf.default, None, identity(leaf.default)) for name, leaf in LEAVES.items()}
 
@@ -67,6 +69,7 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
         return Expansion()
     product_points = [_over(base, combination) for combination in kept]
     included = [_over(base, row) for row in declaration.include]
+    product_points, included = (_recorded(points, problems) for points in (product_points, included))
     resolved = [*product_points, *included]
     if refusal := _too_many(axes, len(resolved) * measure.repeats, measure):
         problems.add(_varying_key(problems), refusal)
@@ -89,6 +92,10 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
                 "a reference with response reflect or elastic is computed from event to event, which ignores no pair"
             )
             problems.add(("measure", "reference", KEY), f"{message}; leave out scene.ignore, or set response none")
+            return expansion
+        if measure.reference is not None and any(map(_has_no_reference, unique)):
+            message = "a reference knows gaps of recorded poses and no hits: choose query tolerance or distance"
+            problems.add(("measure", "reference", KEY), message)
             return expansion
         expansion.points = tuple(_points(unique, measure.reference))
         expansion.swept = _swept(unique, mentioned)
@@ -247,8 +254,27 @@ def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> It
         yield Point(**parts, reference=Reference(reference, shape) if reference else None)
 
 
+def _recorded(points: list[Resolved], problems: FileProblems) -> list[Resolved]:
+    """Points whose poses are recorded have no response; what else they tell may not be given beside them."""
+    found = []
+    for point in points:
+        if point["poses"].value is None:
+            found.append(point)
+            continue
+        for leaf in TOLD_BY_POSES:
+            origin = point[leaf].origin
+            if origin is not None and not (leaf == "response" and point[leaf].value == "none"):
+                problems.add(origin, f"{leaf} has no effect with poses, which tell all motion; leave it out")
+        found.append({**point, "response": LeafValue("none", None, identity("none"))})
+    return found
+
+
 def _ignores_and_answers(point: Resolved) -> bool:
     return bool(point["ignore"].value) and point["response"].value != "none"
+
+
+def _has_no_reference(point: Resolved) -> bool:
+    return point["poses"].value is not None and point["query"].value not in NEAR_QUERIES
 
 
 def _has_a_mesh(point: Resolved) -> bool:

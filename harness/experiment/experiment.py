@@ -57,7 +57,7 @@ class Experiment:
     name : the path below the folder experiments/, else the file's name, without .yaml
     points : in order, the leaf that is swept first varying slowest
     swept : the leaves that differ between points, in the order of the file
-    mesh_paths : the file of every mesh that the points refer to
+    mesh_paths, poses_paths : the file of every mesh, and of all recorded poses, that the points refer to
     source : the text of the file
     overrides : what was set from outside, as it was given
     """
@@ -74,6 +74,7 @@ class Experiment:
     published: Published | None
     report: ReportSpec | None
     mesh_paths: dict[str, Path]
+    poses_paths: dict[str, Path]
     source: str
     overrides: dict[str, Any]
     document: Document = field(repr=False)

@@ -83,6 +83,7 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
     report = _section(ReportSpec, file, "report", problems)
     expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), problems)
     meshes = _locate_meshes(expansion, path.parent, problems)
+    poses = _locate_poses(expansion, path.parent, problems)
     problems.raise_any()
     assert title is not None
     assert measure is not None
@@ -99,6 +100,7 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
         published=published,
         report=report,
         mesh_paths=meshes,
+        poses_paths=poses,
         source=text if isinstance(text, str) else text.decode("utf-8-sig"),
         overrides=dict(set),
         document=document,
@@ -269,4 +271,20 @@ def _locate_meshes(expansion: Expansion, folder: Path, problems: FileProblems) -
                 problems.add_lacking(origin, str(error))
             except InputError as error:
                 problems.add((*origin, *below) if isinstance(origin, tuple) else origin, str(error))
+    return located
+
+
+def _locate_poses(expansion: Expansion, folder: Path, problems: FileProblems) -> dict[str, Path]:
+    """The files of all recorded poses that points refer to, which lie beside the experiment or below."""
+    located: dict[str, Path] = {}
+    for (leaf, text), origin in expansion.origins.items():
+        if leaf != "poses" or (name := json.loads(text)) is None:
+            continue
+        path = (folder / name).resolve()
+        if not path.is_relative_to(folder.resolve()):
+            problems.add(origin, f"the poses {shown(name)} lie outside of the experiment's folder")
+        elif not path.is_file():
+            problems.add(origin, f"there are no poses {shown(name)} beside the experiment")
+        else:
+            located[name] = path
     return located

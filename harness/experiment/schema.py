@@ -80,7 +80,7 @@ BodySize = Annotated[
 class BodySpec(Declared):
     """One body, given in full."""
 
-    position: Vector = Field(description="centre [x, y, z], m")
+    position: Vector | None = Field(None, description="centre [x, y, z], m; needed unless motion has poses")
     mesh: Text | None = Field(None, description="its own mesh, in place of that of the scene")
     velocity: Vector = Field((0.0, 0.0, 0.0), description="[x, y, z], m/s")
     spin: Vector = Field((0.0, 0.0, 0.0), description="angular velocity [x, y, z] in the world frame, rad/s")
@@ -145,6 +145,10 @@ class SceneSpec(Declared):
 class MotionSpec(Declared):
     """How the bodies move."""
 
+    poses: Text | None = Field(
+        None,
+        description="recorded poses, an .npz file beside the experiment, instead of duration, dt, response, speeds",
+    )
     duration: NotNegative = Field(10.0, description="simulated time, s")
     dt: Positive = Field(1 / 60, description="time from frame to frame, s; for predictive, from sample to sample")
     response: Response = Field("reflect", description="a hit flips velocities, passes impulse, does nothing")

@@ -14,17 +14,17 @@ import numpy as np
 
 from harness.arrays import Flags, Pairs
 from harness.measure.clocks import Clock
-from harness.methods.impact_times import FrameMotion, ImpactFinder
+from harness.methods.impact_times import FrameMotion, ImpactFinder, half_ways
 from harness.methods.near_pairs import NearFinder
-from harness.methods.observer import Folds, Observer, Onsets
+from harness.methods.observer import Folds, Observer, Onsets, conserved
 from harness.methods.stages import Plan
 from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.answers import NearLog
-from harness.motion.course import folded_course
 from harness.motion.finite import require_finite_state
 from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
+from harness.motion.recorded_motion import passing_course, trajectory_of
 from harness.scene.scene import Scene
 from harness.vocabulary import Query
 
@@ -86,7 +86,7 @@ class Asking(ABC):
     def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
         """Fly the scene once, from its start; documented as `harness.methods.method.Pipeline.fly`."""
         scene, plan = self._scene, self._plan
-        trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=plan.keeps("orientations"))
+        trajectory = trajectory_of(scene, folded=True, turning=plan.keeps("orientations"))
         observer = Observer(scene, trajectory, penetration=False, traced=traced)
         flight = _Flight(
             law,
@@ -103,7 +103,7 @@ class Asking(ABC):
         times = law.frames / asked if asked else 0.0
         for number in range(1, asked + 1):
             self.frame(flight, number)
-        end = law.frames * law.dt
+        end = law.time_of(law.frames)
         require_finite_state(trajectory.positions, trajectory.velocities, end)
         counted: dict[str, float] = {
             "frames": law.frames,
@@ -116,15 +116,14 @@ class Asking(ABC):
             **counted,
             **rates(counted, len(scene.bodies), law.frames, end),
             **clock_metrics(flight.clock, law.frames, end),
-            "energy_drift": observer.conservation.energy_drift,
-            "escaped": float(observer.escaped),
+            **({} if scene.poses is not None else conserved(observer)),
             "event_digest": observer.digest.value,
         }
         trace = flight.observer.trace(end, counted, near=flight.log is not None)
         answers = flight.log.answers() if flight.log is not None else None
         if trace is not None:
             trace = replace(trace, query=self._query, answers=answers, step=law.dt)
-        course = folded_course(scene.bodies, scene.box, end) if plan.keeps("recording") else None
+        course = passing_course(scene, end) if plan.keeps("recording") else None
         return Outcome(metrics, trace, course, answers)
 
     def _log(self, traced: bool) -> NearLog | None:
@@ -157,7 +156,7 @@ class NearAsking(Asking):
         """There is nothing to get ready."""
 
     def frame(self, flight: _Flight, number: int) -> None:
-        time, trajectory, finder = number * flight.law.dt, flight.trajectory, self._finder
+        time, trajectory, finder = flight.law.time_of(number), flight.trajectory, self._finder
         flight.clock.start()
         trajectory.move_to(time)
         if finder is None:
@@ -192,7 +191,7 @@ class ImpactAsking(Asking):
     def __init__(self, scene: Scene, plan: Plan, finder: ImpactFinder | None) -> None:
         super().__init__(scene, plan)
         self._finder = finder
-        self._middle = Trajectory(scene.bodies, scene.box, folded=True, turning=False)
+        self._middle = trajectory_of(scene, folded=True, turning=False)
 
     @property
     def _query(self) -> Query:
@@ -204,10 +203,12 @@ class ImpactAsking(Asking):
 
     def begin(self, flight: _Flight) -> None:
         if self._finder is not None:
-            self._finder.begin(flight.law.dt)
+            self._finder.begin(half_ways(self._scene, self._scene.bodies.velocities, flight.law.dt))
 
     def frame(self, flight: _Flight, number: int) -> None:
-        time, dt, start = number * flight.law.dt, flight.law.dt, (number - 1) * flight.law.dt
+        law = flight.law
+        time, start = law.time_of(number), law.time_of(number - 1)
+        dt = law.dt if law.times is None else time - start
         trajectory, finder = flight.trajectory, self._finder
         flight.clock.start()
         trajectory.move_to(start)
@@ -221,8 +222,9 @@ class ImpactAsking(Asking):
             trajectory.quaternions,
             self._middle.positions,
             trajectory.velocities_at(start),
-            self._scene.bodies.spins,
+            trajectory.spins_at(start),
             number == 1,
+            dt,
         )
         found = finder.impacts(motion)
         flight.clock.lap("pair_seconds")

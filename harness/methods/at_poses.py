@@ -10,7 +10,7 @@ from harness.arrays import Floats, Pairs
 from harness.backends import registry
 from harness.backends.protocol import Distances, Impacts, ImpactTimes, NearPairs, queries, set_accuracy
 from harness.errors import InputError
-from harness.methods.impact_times import FrameMotion, ImpactFinder
+from harness.methods.impact_times import FrameMotion, ImpactFinder, half_ways
 from harness.methods.method import Method
 from harness.methods.native_queries import NativeImpacts, NativeNearPairs
 from harness.methods.near_pairs import NearFinder
@@ -99,7 +99,7 @@ class Queried:
 
     def load(self, scene: Scene) -> None:
         """Hold a scene."""
-        self._bodies = len(scene.bodies)
+        self._scene, self._bodies = scene, len(scene.bodies)
         if not self._name.kernels:
             self._load_library(scene)
         elif self._name.query == "impact":
@@ -128,7 +128,7 @@ class Queried:
         duration : s, of the frame
         """
         if motion.first:
-            self._impacts.begin(duration)
+            self._impacts.begin(half_ways(self._scene, motion.velocities, duration))
         pairs, times = self._impacts.checked(self._impacts.impacts(motion))
         order = np.lexsort((times, pairs[:, 1], pairs[:, 0]))
         _, first = np.unique(pairs[order, 0] * self._bodies + pairs[order, 1], return_index=True)

@@ -41,6 +41,7 @@ class FrameMotion(NamedTuple):
     middle : (n, 3) m, where the centres are in the middle
     velocities, spins : (n, 3) m/s and rad/s, at the start
     first : whether it is the first frame
+    duration : s
     """
 
     positions: Floats
@@ -49,6 +50,22 @@ class FrameMotion(NamedTuple):
     velocities: Floats
     spins: Floats
     first: bool
+    duration: float
+
+
+def half_ways(scene: Scene, velocities: Floats, duration: float) -> Floats:
+    """(n,) m: no body comes farther from where it is in the middle of a frame.
+
+    Parameters
+    ----------
+    scene : Scene
+    velocities : (n, 3) m/s; a folded path is never farther from its middle than its speed allows
+    duration : s, of a frame; of no effect on recorded poses, of which the longest way of all is taken
+    """
+    if scene.poses is not None:
+        return 0.5 * scene.poses.longest_ways
+    ways: Floats = 0.5 * duration * np.linalg.norm(velocities, axis=1)
+    return ways
 
 
 class ImpactFinder(Protocol):
@@ -58,8 +75,8 @@ class ImpactFinder(Protocol):
     def counters(self) -> Mapping[str, float]:
         """What was counted over all frames, if anything is."""
 
-    def begin(self, duration: float) -> None:
-        """Begin anew, with frames of a duration, s."""
+    def begin(self, ways: Floats) -> None:
+        """Begin anew, with frames in which bodies come no farther from their middle than (n,) m."""
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:
         """Pairs that begin to touch in the next frame, and when; a pair may stand there more than once."""
@@ -81,7 +98,6 @@ class KernelImpacts:
     def __init__(self, scene: Scene, broad_phase: Callable[[Floats], BroadPhase], tolerance: float) -> None:
         self._scene, self._make, self._tolerance = scene, broad_phase, tolerance
         self._room = scene.box.half - scene.bodies.radii[:, None]
-        self._speeds = np.linalg.norm(scene.bodies.velocities, axis=1)
         self._search, self._reach = _search_of(scene)
         self._tests = self._given_up = 0
         self._spheres = scene.shape == "sphere"
@@ -91,15 +107,13 @@ class KernelImpacts:
         tests: dict[str, float] = {"pair_tests": self._broad_phase.pair_tests, "narrow_tests": self._tests}
         return tests if self._spheres else {**tests, "unfollowed_contacts": self._given_up}
 
-    def begin(self, duration: float) -> None:
-        self._duration, self._tests, self._given_up = duration, 0, 0
+    def begin(self, ways: Floats) -> None:
+        self._tests = self._given_up = 0
         self._before = np.empty(0, PAIR_STATE)
         self._velocities = self._spins = np.full_like(self._scene.bodies.spins, np.nan)
         sizes = self._scene.bodies.sizes
-        # a folded path is never farther from its middle than its speed allows
-        way = 0.5 * duration * self._speeds
         near = max(self._tolerance, 2.0 * LEAST_GAP) * sizes
-        self._broad_phase = self._make((self._scene.enclosing_radii + way + near) * (1.0 + SLACK))
+        self._broad_phase = self._make((self._scene.enclosing_radii + ways + near) * (1.0 + SLACK))
         self._found = onsets_of(0, 64)
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:
@@ -113,7 +127,8 @@ class KernelImpacts:
             self._room,
             self._scene.bodies.sizes,
             self._reach,
-            self._duration,
+            motion.duration,
+            np.inf if self._scene.poses is None else motion.duration,
         )
         steady = ((motion.velocities == self._velocities) & (motion.spins == self._spins)).all(axis=1)
         self._velocities, self._spins = motion.velocities.copy(), motion.spins.copy()

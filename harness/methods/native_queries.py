@@ -72,8 +72,8 @@ class NativeImpacts:
     def counters(self) -> Mapping[str, float]:
         return dict(getattr(self._backend, "counters", {}))
 
-    def begin(self, duration: float) -> None:
-        self._duration = duration
+    def begin(self, ways: Floats) -> None:
+        """A backend finds close pairs by itself."""
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:
         positions, velocities = motion.positions.copy(), motion.velocities.copy()
@@ -81,10 +81,10 @@ class NativeImpacts:
         quaternions, now, parts = motion.quaternions, 0.0, []
         while True:
             waits = self._until_walls(positions, velocities)
-            wait = min(float(waits.min(initial=np.inf)), self._duration - now)
+            wait = min(float(waits.min(initial=np.inf)), motion.duration - now)
             pairs, times = self._piece(positions, quaternions, velocities, motion.spins, wait)
             parts.append((pairs, now + times))
-            if now + wait >= self._duration:
+            if now + wait >= motion.duration:
                 break
             now += wait
             positions += velocities * wait

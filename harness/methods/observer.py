@@ -107,6 +107,11 @@ class Observer:
         self.pair_contacts += times * len(pairs)
 
 
+def conserved(observer: Observer) -> dict[str, float]:
+    """What the motion ought to keep: its energy, and every body in the box; of recorded poses neither is known."""
+    return {"energy_drift": observer.conservation.energy_drift, "escaped": float(observer.escaped)}
+
+
 class Folds:
     """Counts the walls that the folded paths have met since the frame before."""
 

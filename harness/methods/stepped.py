@@ -105,7 +105,7 @@ class SteppedMethod(Method):
         self._motion(scene, decisions)
         _orientations(scene, decisions)
         pairs = self._pairs(scene, flown, decisions)
-        _response(law, pairs, decisions)
+        _response(scene, law, pairs, decisions)
         self._walls(scene, law, flown, pairs, decisions)
         if self.name.query == "collision":
             decide_penetration(scene, decisions)
@@ -133,7 +133,10 @@ class SteppedMethod(Method):
         yield f"frames of {shape}s{of_meshes(meshes)}", partial(_fly_frames, shape, meshes)
 
     def _motion(self, scene: Scene, decisions: Decisions) -> None:
-        if not all_at_rest(scene):
+        if scene.poses is not None:
+            why = f"poses are recorded: every frame takes those of {scene.poses.name}"
+            decisions.take("motion", True, why, fixed="poses are recorded")
+        elif not all_at_rest(scene):
             fixed = "bodies move"
             decisions.take(
                 "motion", True, "bodies move: every frame places them and finds their pairs anew", fixed=fixed
@@ -159,7 +162,7 @@ class SteppedMethod(Method):
             decisions.take("pairs", False, why, fixed=why)
             self.no_detection(why, decisions, fixed=why)
             return False
-        if self.leaves_out and no_pair_can_meet(scene, flown, self.within or 0.0):
+        if self.leaves_out and scene.poses is None and no_pair_can_meet(scene, flown, self.within or 0.0):
             met = f"come within {self.within:g} m" if self.within else "meet"
             why = f"no two of {count} bodies can {met} in {flown:g} s at their speeds"
             if not decisions.take("pairs", False, why):
@@ -179,7 +182,9 @@ class SteppedMethod(Method):
 
     def _walls(self, scene: Scene, law: MotionLaw, flown: float, pairs: bool, decisions: Decisions) -> None:
         everything = self.tests_everything
-        if law.response == "none":
+        if scene.poses is not None:
+            kept = decisions.take("walls", False, "poses are recorded: there are no walls", fixed="there are no walls")
+        elif law.response == "none":
             why = "response is none: the box folds the path of each bounding sphere exactly"
             kept = decisions.take("walls", False, why, fixed="nothing would answer them")
         elif not len(scene.bodies):
@@ -225,6 +230,8 @@ def decide_recording(recorded: bool, decisions: Decisions) -> None:
 def _orientations(scene: Scene, decisions: Decisions) -> None:
     if scene.shape == "sphere":
         decisions.take("orientations", False, "a sphere looks the same however it is turned")
+    elif scene.poses is not None:
+        decisions.take("orientations", True, "poses are recorded", fixed="poses are recorded")
     elif not scene.bodies.spins.any():
         decisions.take("orientations", False, "no body spins, so each keeps the orientation it starts with")
     else:
@@ -232,8 +239,10 @@ def _orientations(scene: Scene, decisions: Decisions) -> None:
         decisions.take("orientations", True, why, fixed=why)
 
 
-def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
-    if law.response == "none":
+def _response(scene: Scene, law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
+    if scene.poses is not None:
+        decisions.take("response", False, "poses are recorded: nothing answers a hit", fixed="poses are recorded")
+    elif law.response == "none":
         why = "response is none: bodies pass through each other"
         decisions.take("response", False, why, fixed="response is none")
     elif not pairs:
@@ -266,7 +275,7 @@ def _fly_frames(shape: Shape, meshes: int) -> None:
         decisions.take("motion", True, "")
         _orientations(scene, decisions)
         decisions.take("pairs", True, "")
-        _response(law, True, decisions)
+        _response(scene, law, True, decisions)
         decisions.take("walls", response != "none", "")
         decisions.take("wall_cull", shape != "sphere", "")
         decide_penetration(scene, decisions)

@@ -16,15 +16,16 @@ from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.backends.contract import read_only, require_pairs
 from harness.backends.protocol import Backend
 from harness.measure.clocks import Clock
-from harness.methods.observer import Folds, Observer, Onsets
+from harness.methods.observer import Folds, Observer, Onsets, conserved
 from harness.methods.stages import Plan
 from harness.methods.step_metrics import PHASES, clock_metrics, rates
-from harness.motion.course import CourseLog, folded_course
+from harness.motion.course import CourseLog
 from harness.motion.finite import require_finite_state
 from harness.motion.hit_states import HitStateLog, RecordedResponse
 from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
+from harness.motion.recorded_motion import passing_course, trajectory_of
 from harness.motion.response import CollisionResponse
 from harness.narrowphase.body_shapes import hulls_of_bodies
 from harness.narrowphase.support import support_map
@@ -87,7 +88,7 @@ class Stepping:
         """
         scene, plan, detector = self._scene, self._plan, self._detector
         folded, recorded = law.response == "none", plan.keeps("recording")
-        trajectory = Trajectory(scene.bodies, scene.box, folded=folded, turning=plan.keeps("orientations"))
+        trajectory = trajectory_of(scene, folded=folded, turning=plan.keeps("orientations"))
         observer = Observer(scene, trajectory, penetration=plan.keeps("penetration"), traced=traced)
         response, states = _response(scene, trajectory, law, stateful=traced and recorded)
         course = CourseLog(trajectory.positions, trajectory.velocities) if recorded and response else None
@@ -96,7 +97,7 @@ class Stepping:
         clock = Clock(*PHASES)
 
         def fly(number: int) -> _Frame:
-            frame = _Frame(number * law.dt, _NO_PAIRS, _NO_HITS, _NO_WALLS)
+            frame = _Frame(law.time_of(number), _NO_PAIRS, _NO_HITS, _NO_WALLS)
             clock.start()
             for phase, step in steps:
                 step(frame)
@@ -111,7 +112,7 @@ class Stepping:
             tests = _every_frame(fly, law.frames, detector)
         else:
             tests = _first_frames(fly, law.frames, observer, detector)
-        end = law.frames * law.dt
+        end = law.time_of(law.frames)
         require_finite_state(trajectory.positions, trajectory.velocities, end)
         counted: dict[str, float] = {
             "frames": law.frames,
@@ -126,12 +127,12 @@ class Stepping:
             **counted,
             **rates(counted, len(scene.bodies), law.frames, end),
             **clock_metrics(clock, law.frames, end),
-            **_errors(observer, response, plan),
+            **_errors(scene, observer, response, plan),
         }
         trace = observer.trace(end, counted, states=None if states is None else states.states())
         if course is not None:
             return Outcome(metrics, trace, course.course())
-        return Outcome(metrics, trace, folded_course(scene.bodies, scene.box, end) if recorded else None)
+        return Outcome(metrics, trace, passing_course(scene, end) if recorded else None)
 
 
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
@@ -295,8 +296,8 @@ def _pair_counters(detector: Detector | None) -> dict[str, float]:
     return {"pair_tests": 0, "narrow_tests": 0} if detector is None else dict(getattr(detector, "counters", {}))
 
 
-def _errors(observer: Observer, response: CollisionResponse | None, plan: Plan) -> dict[str, float]:
-    errors = {"energy_drift": observer.conservation.energy_drift, "escaped": float(observer.escaped)}
+def _errors(scene: Scene, observer: Observer, response: CollisionResponse | None, plan: Plan) -> dict[str, float]:
+    errors = {} if scene.poses is not None else conserved(observer)
     errors["event_digest"] = observer.digest.value
     if response is not None and response.elastic and observer.conservation.momentum_scale > 0.0:
         errors["momentum_drift"] = response.momentum_added / observer.conservation.momentum_scale

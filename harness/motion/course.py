@@ -25,12 +25,15 @@ class Course:
     times : (m,) float array, s, when each leg begins
     bodies : (m,) int array, whose it is
     positions, velocities : (m, 3) float arrays, m and m/s, from its begin on
+    quaternions, spins : (m, 4) and (m, 3) rad/s, likewise, where poses were recorded; else a spin never changes
     """
 
     times: Floats
     bodies: Ints
     positions: Floats
     velocities: Floats
+    quaternions: Floats | None = None
+    spins: Floats | None = None
 
 
 class CourseLog:

@@ -79,6 +79,10 @@ class Trajectory:
             velocities[(folds[:, 0::2] + folds[:, 1::2]) % 2 == 1] *= -1.0
         return velocities
 
+    def spins_at(self, time: float) -> Floats:
+        """(n, 3) rad/s at `time`: nothing changes them."""
+        return self._spins
+
 
 @kernel
 def _fly(origins: Floats, velocities: Floats, since: Floats, time: float, positions: Floats) -> None:

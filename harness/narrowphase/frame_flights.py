@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +24,7 @@ class FrameFlights(NamedTuple):
     sizes : (n,) float array, m
     reach : of size, the farthest that a point of a body is from its centre
     duration : s
+    known : s, for how long bodies go on so but for walls; inf, or the duration if the next frame is another motion
     """
 
     positions: Floats
@@ -35,6 +35,7 @@ class FrameFlights(NamedTuple):
     sizes: Floats
     reach: float
     duration: float
+    known: float
 
 
 class PairFlight(NamedTuple):
@@ -63,7 +64,7 @@ def flight_of_pair(flights: FrameFlights, i: int, j: int, pair: PairFlight) -> N
 @inner
 def until_fold(flights: FrameFlights, i: int, j: int, pair: PairFlight) -> float:
     """How long the way of both bodies is straight, s."""
-    wait = inf
+    wait = flights.known
     for side in range(2):
         body = i if side == 0 else j
         for axis in range(3):

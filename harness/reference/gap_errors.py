@@ -6,8 +6,8 @@ import numpy as np
 
 from harness.arrays import Ints, Pairs
 from harness.motion.answers import NearAnswers
-from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
+from harness.motion.recorded_motion import trajectory_of
 from harness.reference.body_gaps import off_surface
 from harness.reference.near_pairs import NearReference, placed
 from harness.scene.scene import Scene
@@ -72,8 +72,8 @@ def _keys(frames: Ints, pairs: Pairs) -> list[tuple[int, int, int]]:
 
 def _witness_error(scene: Scene, law: MotionLaw, found: NearAnswers, row: int, gap: float) -> float:
     """By how much the nearest points of a pair are off the bodies, or farther apart than the gap, m."""
-    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=True)
-    trajectory.move_to(int(found.frames[row]) * law.dt)
+    trajectory = trajectory_of(scene, folded=True, turning=True)
+    trajectory.move_to(law.time_of(int(found.frames[row])))
     points = found.points[row]
     error = float(np.linalg.norm(points[0] - points[1])) - gap
     for body, point in zip(found.pairs[row].tolist(), points, strict=True):

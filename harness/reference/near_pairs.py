@@ -13,6 +13,7 @@ import numpy as np
 from harness.arrays import Floats, Ints, Pairs
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
+from harness.motion.recorded_motion import trajectory_of
 from harness.reference.body_gaps import GapBounds, sphere_bounds, surface_bounds
 from harness.scene.ignored_pairs import without
 from harness.scene.mesh import Surface
@@ -52,12 +53,12 @@ def near_reference(scene: Scene, law: MotionLaw, within: float) -> NearReference
     law : without response
     within : m
     """
-    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=True)
+    trajectory = trajectory_of(scene, folded=True, turning=True)
     frames: list[int] = []
     rows: list[tuple[int, int, int, float, float]] = []
     count = 0
     for frame in _spread(law.frames):
-        trajectory.move_to(frame * law.dt)
+        trajectory.move_to(law.time_of(frame))
         close = _close(scene, trajectory.positions, within)
         if frames and count + len(close) > MOST_PAIRS:
             break

@@ -43,6 +43,9 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         "hit_first": ("i4", recording.hit_bodies[:, 0]),
         "hit_second": ("i4", walls),
     }
+    if recording.leg_quaternions is not None and recording.leg_spins is not None:
+        arrays["leg_quaternions"] = ("f4", recording.leg_quaternions[order])
+        arrays["leg_spins"] = ("f4", recording.leg_spins[order])
     if recording.surfaces:
         few = max(len(surface.vertices) for surface in recording.surfaces) < 2**16
         arrays["vertices"] = ("f4", np.concatenate([surface.vertices for surface in recording.surfaces]))
@@ -57,6 +60,7 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         arrays["near_points"] = ("f4", near.points)
     if recording.hit_points is not None:
         arrays["hit_points"] = ("f4", recording.hit_points)
+    middle, half = view_box(recording)
     places: dict[str, tuple[str, int, int]] = {}
     content = bytearray()
     for name, (kind, values) in arrays.items():
@@ -69,11 +73,23 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         "mesh": ", ".join(surface.name for surface in recording.surfaces) or None,
         "duration": recording.duration,
         "dt": recording.dt,
-        "half_box": recording.half_box.tolist(),
+        "box": recording.half_box is not None,
+        "half_box": half.tolist(),
+        "middle": middle.tolist(),
         "facts": [list(fact) for fact in facts],
         "arrays": places,
         "data": base64.b64encode(bytes(content)).decode("ascii"),
     }
+
+
+def view_box(recording: Recording) -> tuple[Floats, Floats]:
+    """(3,), (3,) m: the middle and half the sides of what a picture shows: the box, or where bodies ever are."""
+    if recording.half_box is not None or not len(recording):
+        return np.zeros(3), np.ones(3) if recording.half_box is None else recording.half_box
+    radii = recording.sizes[recording.leg_bodies, None] / 2
+    low = (recording.leg_positions - radii).min(axis=0)
+    high = (recording.leg_positions + radii).max(axis=0)
+    return (low + high) / 2, (high - low) / 2
 
 
 def _starts(lengths: Sequence[int]) -> Ints:

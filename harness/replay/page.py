@@ -13,7 +13,7 @@ from typing import NamedTuple
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from harness.replay.document import Fact, document
+from harness.replay.document import Fact, document, view_box
 from harness.replay.still import still
 from harness.store.recording import Recording
 
@@ -100,8 +100,9 @@ def summary(recording: Recording) -> str:
 
 def described(recording: Recording) -> str:
     """The picture in words, for screen readers."""
-    sides = " × ".join(f"{2 * half:.4g}" for half in recording.half_box)
-    return f"A box of {sides} m with {summary(recording)}."
+    sides = " × ".join(f"{2 * half:.4g}" for half in view_box(recording)[1])
+    room = "A box of" if recording.half_box is not None else "A room without walls of"
+    return f"{room} {sides} m with {summary(recording)}."
 
 
 def _page(

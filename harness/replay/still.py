@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from trimesh.creation import icosphere
 
 from harness.arrays import Floats
-from harness.replay.document import start_positions
+from harness.replay.document import start_positions, view_box
 from harness.store.recording import Recording, Surface
 
 WIDTH, HEIGHT = 800, 500
@@ -31,8 +31,11 @@ def still(recording: Recording) -> bytes:
     """A PNG with a transparent background, the same bytes for the same recording."""
     image = Image.new("RGBA", (WIDTH * _OVERSAMPLING, HEIGHT * _OVERSAMPLING), (0, 0, 0, 0))
     draw = ImageDraw.Draw(image)
-    eye, axes = _camera(recording.half_box)
-    _draw_box(draw, recording.half_box, eye, axes)
+    middle, half = view_box(recording)
+    eye, axes = _camera(half)
+    if recording.half_box is not None:
+        _draw_box(draw, half, eye, axes)
+    eye = eye + middle
     if len(recording):
         _draw_bodies(draw, recording, eye, axes)
     buffer = io.BytesIO()

@@ -41,8 +41,9 @@ def near_errors(point: Point, files: SceneFiles, answers: NearAnswers) -> dict[s
     files : that its scene names
     answers : of the run
     """
-    reference, within, law = reference_point(point), point.engine.within or 0.0, law_of(point)
+    reference, within = reference_point(point), point.engine.within or 0.0
     scene = build_scene(reference, files)
+    law = law_of(point, scene)
 
     def make() -> dict[str, Any]:
         return asdict(near_reference(scene, law, within))

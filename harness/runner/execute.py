@@ -69,7 +69,8 @@ def execute(
     """
     warm_up(point)
     clock = Clock("setup_seconds")
-    scene, law, method = build_scene(point, files, memory), law_of(point), method_of_point(point)
+    scene, method = build_scene(point, files, memory), method_of_point(point)
+    law = law_of(point, scene)
     plan = method.plan(scene, law, recorded=traced or recorded)
     pipeline = method.load(scene, plan)
     clock.lap("setup_seconds")
@@ -98,7 +99,7 @@ def execute(
 
 def hits(point: Point, scene: Scene) -> Trace:
     """Every hit of a scene flown by the method of a point, with a plan of the scene's own."""
-    method, law = method_of_point(point), law_of(point)
+    method, law = method_of_point(point), law_of(point, scene)
     return _hits_as_planned(method, method.plan(scene, law), law, scene)
 
 
@@ -123,7 +124,7 @@ def plan_of(point: Point, scene: Scene) -> Plan:
     InputError
         If the point forces a stage that cannot be forced, or its backend is missing.
     """
-    return method_of_point(point).plan(scene, law_of(point))
+    return method_of_point(point).plan(scene, law_of(point, scene))
 
 
 def _peak_memory() -> float:

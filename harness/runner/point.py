@@ -6,6 +6,7 @@ from harness.experiment.experiment import Point
 from harness.methods.method import Method
 from harness.methods.registry import method_of
 from harness.motion.law import MotionLaw
+from harness.scene.scene import Scene
 from harness.vocabulary import ALGORITHMS, MethodName
 
 
@@ -21,9 +22,12 @@ def method_of_point(point: Point) -> Method:
     )
 
 
-def law_of(point: Point) -> MotionLaw:
-    """How the bodies of a point move."""
+def law_of(point: Point, scene: Scene) -> MotionLaw:
+    """How the bodies of a point move, whose scene is at hand."""
     motion = point.motion
+    if scene.poses is not None:
+        times = tuple(scene.poses.time.tolist())
+        return MotionLaw(times[-1], times[-1] / (len(times) - 1), motion.response, times=times)
     return MotionLaw(motion.duration, motion.dt, motion.response, motion.restitution)
 
 

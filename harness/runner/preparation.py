@@ -10,18 +10,19 @@ from typing import NamedTuple
 from harness.backends.registry import names
 from harness.backends.statement import missing
 from harness.errors import InputError, NotInstalledError, Problem
-from harness.experiment.experiment import Experiment
+from harness.experiment.experiment import Experiment, Point
 from harness.experiment.load import find_experiments, load
 from harness.experiment.messages import listed, near, shown
-from harness.measure.metrics import METRICS
+from harness.measure.metrics import METRICS, ON_DEMAND
 from harness.methods.stages import StageError
 from harness.scene.mesh import NO_HULL, Mesh
-from harness.scene.mesh_child import open_meshes
+from harness.scene.mesh_child import open_files
+from harness.scene.recorded_poses import RecordedPoses
 from harness.scene.scene_files import Opened
 
 
 class Prepared(NamedTuple):
-    """The valid experiments, their meshes by file, the problems of the others, and what others lack on this machine."""
+    """The valid experiments, their meshes and poses by file, the problems of the others, and what others lack here."""
 
     experiments: list[Experiment]
     meshes: Opened
@@ -78,10 +79,10 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
             lacking += error.problems
         except InputError as error:
             problems += error.problems
-    meshes, broken = _open_meshes(loaded)
+    meshes, broken = _open_files(loaded)
     valid = []
     for experiment in loaded:
-        found = [*_names(experiment), *_mesh_problems(experiment, meshes, broken), *_namesakes(experiment, loaded)]
+        found = [*_names(experiment), *_file_problems(experiment, meshes, broken), *_namesakes(experiment, loaded)]
         found = found or list(_forced(experiment, meshes))
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
@@ -89,13 +90,35 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     return Prepared(valid, meshes, list(dict.fromkeys(problems)), lacking)
 
 
-def _open_meshes(experiments: Sequence[Experiment]) -> tuple[Opened, dict[Path, str]]:
+def _open_files(experiments: Sequence[Experiment]) -> tuple[Opened, dict[Path, str]]:
     paths = list(dict.fromkeys(path for experiment in experiments for path in experiment.mesh_paths.values()))
-    if not paths:
+    poses = list(dict.fromkeys(path for experiment in experiments for path in experiment.poses_paths.values()))
+    if not paths and not poses:
         return {}, {}
-    opened = open_meshes(paths)
+    opened = open_files(paths, poses)
     meshes = {path: mesh for path, mesh in opened.items() if not isinstance(mesh, str)}
     return meshes, {path: message for path, message in opened.items() if isinstance(message, str)}
+
+
+def _file_problems(experiment: Experiment, opened: Opened, broken: Mapping[Path, str]) -> Iterator[Problem]:
+    yield from _mesh_problems(experiment, opened, broken)
+    for name, path in experiment.poses_paths.items():
+        if path in broken:
+            yield experiment.leaf_problem("poses", name, broken[path])
+            continue
+        recorded, counts = opened[path], {_bodies(point) for point in experiment.points if point.motion.poses == name}
+        assert isinstance(recorded, RecordedPoses)
+        for count in sorted(counts - {recorded.bodies}):
+            yield experiment.leaf_problem(
+                "poses", name, f"{path.name} has poses of {recorded.bodies} bodies, not {count}"
+            )
+    if experiment.poses_paths and (asked := sorted(experiment.metrics & ON_DEMAND)):
+        message = f"recorded poses cannot be flown again in another form, so that nothing is known of {asked[0]}"
+        yield experiment.leaf_problem("poses", next(iter(experiment.poses_paths)), message)
+
+
+def _bodies(point: Point) -> int:
+    return len(point.scene.bodies) if point.scene.bodies is not None else point.scene.count or 0
 
 
 def _mesh_problems(experiment: Experiment, meshes: Opened, broken: Mapping[Path, str]) -> Iterator[Problem]:

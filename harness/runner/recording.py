@@ -44,8 +44,8 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
     return Recording(
         shape=scene.shape,
         duration=trace.time,
-        dt=point.motion.dt if is_stepped(point) else None,
-        half_box=scene.box.half,
+        dt=law_of(point, scene).dt if is_stepped(point) else None,
+        half_box=scene.box.half if scene.poses is None else None,
         sizes=bodies.sizes,
         quaternions=bodies.quaternions,
         spins=bodies.spins,
@@ -58,8 +58,10 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
         hit_times=trace.times,
         hit_bodies=trace.bodies,
         hit_walls=trace.walls,
-        near=_near_lines(outcome.answers, law_of(point), scene) if outcome.answers is not None else None,
+        near=_near_lines(outcome.answers, law_of(point, scene), scene) if outcome.answers is not None else None,
         hit_points=contact_points(scene, trace) if point.engine.query == "impact" else None,
+        leg_quaternions=course.quaternions,
+        leg_spins=course.spins,
     )
 
 
@@ -68,7 +70,7 @@ def _near_lines(answers: NearAnswers, law: MotionLaw, scene: Scene) -> NearLines
     with np.errstate(invalid="ignore"):
         there = (np.linalg.norm(answers.points[:, 0] - answers.points[:, 1], axis=1) > 0.0) & (answers.gaps != 0.0)
     found = NearLines(answers.frames[there], answers.pairs[there], answers.points[there])
-    if not all_at_rest(scene) or found.frames.max(initial=1) > 1:
+    if scene.poses is not None or not all_at_rest(scene) or found.frames.max(initial=1) > 1:
         return found
     # the one frame that was asked about stands for all
     frames = np.repeat(np.arange(1, law.frames + 1), len(found.frames))

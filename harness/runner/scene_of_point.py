@@ -10,6 +10,7 @@ from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.launch import directions, orientations, place
 from harness.scene.mesh import Mesh
+from harness.scene.recorded_poses import RecordedPoses
 from harness.scene.scene import Scene
 from harness.scene.scene_files import SceneFiles
 
@@ -46,6 +47,8 @@ def build_scene(point: Point, files: SceneFiles, memory: int | None = None) -> S
     count = body_count(point)
     _refuse_too_large(count, memory)
     mesh_of = _mesh_numbers(point, count)
+    if files.poses is not None:
+        return _recorded(point, files, files.poses, mesh_of)
     bodies = _launched(point, files, mesh_of) if point.scene.bodies is None else _explicit(point, files, mesh_of)
     return Scene(
         point.scene.shape,
@@ -55,6 +58,22 @@ def build_scene(point: Point, files: SceneFiles, memory: int | None = None) -> S
         mesh_of=mesh_of,
         ignored=_ignored(point),
     )
+
+
+def _recorded(point: Point, files: SceneFiles, poses: RecordedPoses, mesh_of: Ints) -> Scene:
+    """A scene whose poses are recorded, in the frames of the mesh files; this program's are those of the centres."""
+    explicit = point.scene.bodies is not None
+    sizes = _explicit_sizes(point, files, mesh_of) if explicit else _sizes(point, files, mesh_of)
+    offsets = np.zeros((len(mesh_of), 3))
+    if files.meshes:
+        scales = sizes / _diameters(files.meshes)[mesh_of]
+        offsets = np.array([mesh.centre for mesh in files.meshes])[mesh_of] * scales[:, None]
+    centres = poses.of_centres(offsets)
+    bodies = centres.at_start(sizes, sizes**3)
+    # twice as wide as it must be, so that no rounding brings a body to a wall
+    box = Box(2.0 * centres.half_box(bodies.radii))
+    scene = point.scene
+    return Scene(scene.shape, files.meshes, bodies, box, mesh_of=mesh_of, ignored=_ignored(point), poses=centres)
 
 
 def body_count(point: Point) -> int:
@@ -74,15 +93,23 @@ def box_of(point: Point, files: SceneFiles) -> Box:
 def derived_parameters(point: Point, files: SceneFiles) -> dict[str, float]:
     """`faces`, `hull_vertices`, `packing` and `box_side` of a point, without placing its bodies.
 
+    Of recorded poses `duration` and `dt` (the mean) instead of the last two.
+
     Packing is that of the sizes really drawn, of a million bodies and more that of the first million; so are the
     faces and vertices of several meshes, which are means over the bodies.
     """
     count = body_count(point)
     mesh_of = _mesh_numbers(point, min(count, MOST_DRAWN))
-    box = box_of(point, files)
-    return {
+    meshes = {
         "faces": _mean([len(mesh.faces) for mesh in files.meshes], mesh_of),
         "hull_vertices": _mean([len(mesh.hull.vertices) for mesh in files.meshes], mesh_of),
+    }
+    if files.poses is not None:  # there is no box
+        span = float(files.poses.time[-1] - files.poses.time[0])
+        return {**meshes, "duration": span, "dt": span / (len(files.poses) - 1)}
+    box = box_of(point, files)
+    return {
+        **meshes,
         "packing": float(np.pi / 6 * _cubes(point, files, mesh_of) / box.volume),
         "box_side": float(np.cbrt(box.volume)),
     }

@@ -158,6 +158,8 @@ def on_demand_of(experiment: Experiment) -> frozenset[str]:
 def files_of(experiment: Experiment, point: Point, opened: Opened) -> SceneFiles:
     """The files that a point of an experiment names."""
     paths = [experiment.mesh_paths[name] for name in point.scene.mesh_names]
+    if point.motion.poses is not None:
+        paths.append(experiment.poses_paths[point.motion.poses])
     return SceneFiles.of(tuple(opened[path] for path in paths))
 
 

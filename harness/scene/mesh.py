@@ -41,6 +41,7 @@ class Mesh:
     notes : what a person should know, such as "open: 3 boundary edges"
     diameter : of the minimal bounding sphere before it was normalised, in the file's unit
     flat : all of it lies in one plane, so that it encloses nothing; its hull is a polygon with two sides
+    centre : of that sphere in the file, in its unit
     """
 
     name: str
@@ -53,11 +54,12 @@ class Mesh:
     notes: tuple[str, ...] = ()
     diameter: float = 1.0
     flat: bool = False
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def identity(self) -> str:
-        """By which two meshes are the same, and as large in their files: a size may be native."""
-        return f"{self.digest} {self.diameter!r}"
+        """By which two meshes are the same, as large and in the same place in their files, which poses may be of."""
+        return f"{self.digest} {self.diameter!r} {self.centre!r}"
 
 
 THIN = 2.0**-50

@@ -73,6 +73,7 @@ def facts_of(mesh: Mesh) -> dict[str, object]:
         "notes": mesh.notes,
         "diameter": mesh.diameter,
         "flat": mesh.flat,
+        "centre": mesh.centre,
     }
 
 
@@ -92,6 +93,7 @@ def mesh_of(facts: Mapping[str, Any], arrays: Sequence[NDArray[Any]]) -> Mesh:
         notes=tuple(facts["notes"]),
         diameter=facts["diameter"],
         flat=facts["flat"],
+        centre=tuple(facts["centre"]),
     )
 
 

@@ -110,12 +110,13 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
     thin = _thin(polygons.vertices, cut.faces)
     faces, used = _compact(cut.faces[~thin])
     vertices = polygons.vertices[used]
-    vertices, extent = _unit_box(vertices)
+    vertices, middle, extent = _unit_box(vertices)
     flat = _is_flat(vertices)
     hull_around = flat_hull if flat else convex_hull
     centre, radius = bounding_sphere(vertices if flat else hull_around(vertices).vertices)
     vertices = np.ascontiguousarray((vertices - centre) / (2 * radius))
     hull = hull_around(vertices)
+    x, y, z = (middle + centre * extent).tolist()
     closed, about = faces, topology(faces, len(vertices))
     if thin.any() and not about.watertight:
         # A face without area often stands where an edge meets two others: that is no gap, though no edge is shared.
@@ -136,6 +137,7 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
         notes=(*((FLAT_NOTE,) if flat else ()), *_notes(about, cut, int(thin.sum())), *polygons.notes, *notes),
         diameter=2 * radius * extent,
         flat=flat,
+        centre=(x, y, z),
     )
 
 
@@ -197,14 +199,15 @@ def _compact(faces: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.in
     return renumbered.reshape(-1, 3).astype(np.int32), used
 
 
-def _unit_box(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-    """The vertices moved to the origin and scaled to a largest extent of 1, and that extent."""
+def _unit_box(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """The vertices moved to the origin and scaled to a largest extent of 1; where they were, and that extent."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     with np.errstate(over="ignore"):
         extent = float((high - low).max())
     if not EXTENTS[0] <= extent <= EXTENTS[1]:
         raise InputError(f"the mesh's extent is {extent:g}; it must be between {EXTENTS[0]:g} and {EXTENTS[1]:g}")
-    return (vertices - (low + (high - low) / 2)) / extent, extent
+    middle = low + (high - low) / 2
+    return (vertices - middle) / extent, middle, extent
 
 
 def _is_flat(vertices: NDArray[np.float64]) -> bool:

@@ -47,7 +47,7 @@ class RecordedPoses:
         return int(self.positions.shape[1])
 
     def of_centres(self, offsets: Floats) -> RecordedPoses:
-        """The poses of points of the bodies, such as the centres of their bounding spheres.
+        """The poses of points of the bodies, such as the centres of their bounding spheres, from time 0 on.
 
         Parameters
         ----------
@@ -55,26 +55,39 @@ class RecordedPoses:
         """
         return RecordedPoses(
             self.name,
-            self.time,
+            self.time - self.time[0],
             self.positions + _turned(self.quaternions, np.broadcast_to(offsets, self.positions.shape)),
             self.quaternions,
             self.digest,
         )
 
-    def at(self, frame: int, sizes: Floats) -> Bodies:
-        """The bodies at one of the times, with the motion that takes them to the next: constant velocity and spin.
+    def motion(self, frame: int) -> tuple[Floats, Floats]:
+        """The velocities (n, 3) m/s and spins (n, 3) rad/s that take the bodies from one time to the next.
 
-        Parameters
-        ----------
-        frame : which time, from 0; at the last one the bodies are at rest
-        sizes : (n,) float array, m
+        Both are constant on the way. The turn is the shorter one; after the last time bodies are at rest.
         """
-        velocities, spins = np.zeros((2, self.bodies, 3))
-        if frame + 1 < len(self):
-            duration = self.time[frame + 1] - self.time[frame]
-            velocities = (self.positions[frame + 1] - self.positions[frame]) / duration
-            spins = rotation_vectors(self.quaternions[frame], self.quaternions[frame + 1]) / duration
-        return Bodies(self.positions[frame], velocities, self.quaternions[frame], spins, sizes, sizes**3)
+        if frame + 1 >= len(self):
+            velocities, spins = np.zeros((2, self.bodies, 3))
+            return velocities, spins
+        duration = self.time[frame + 1] - self.time[frame]
+        velocities = (self.positions[frame + 1] - self.positions[frame]) / duration
+        return velocities, rotation_vectors(self.quaternions[frame], self.quaternions[frame + 1]) / duration
+
+    def at_start(self, sizes: Floats, masses: Floats) -> Bodies:
+        """The bodies at the first time; sizes (n,) m, masses (n,) kg."""
+        velocities, spins = self.motion(0)
+        return Bodies(self.positions[0], velocities, self.quaternions[0], spins, sizes, masses)
+
+    @property
+    def longest_ways(self) -> Floats:
+        """(n,) m: the farthest that each body moves from one time to the next."""
+        ways: Floats = np.linalg.norm(np.diff(self.positions, axis=0), axis=2).max(axis=0)
+        return ways
+
+    def half_box(self, radii: Floats) -> Floats:
+        """(3,) m: half the sides of a box about the origin that holds spheres around the bodies at all times."""
+        half: Floats = (np.abs(self.positions) + radii[:, None]).max(axis=(0, 1))
+        return half
 
 
 def digest_of(time: Floats, positions: Floats, quaternions: Floats) -> str:

@@ -13,6 +13,7 @@ from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import Hull
 from harness.scene.mesh import NO_HULL, Mesh, Surface
+from harness.scene.recorded_poses import RecordedPoses
 from harness.vocabulary import Shape
 
 Solid = tuple[int, float]
@@ -38,6 +39,7 @@ class Scene:
         gets the hull that one of them has made
     mesh_of : (n,) int array, the number of each body's mesh; all have the first if it is left out
     ignored : (k, 2) int array, pairs i < j that are never asked about, sorted, each once
+    poses : of the centres, where they were recorded; the box is then only known to hold them
     """
 
     shape: Shape
@@ -47,6 +49,7 @@ class Scene:
     hulls: Mapping[Solid, Hull] = field(default_factory=dict)
     mesh_of: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
     ignored: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    poses: RecordedPoses | None = None
 
     def __post_init__(self) -> None:
         if not self.meshes and self.shape != "sphere":

@@ -62,13 +62,14 @@ class Recording:
     shape : what the narrow phase saw: sphere, hull or mesh
     duration : s
     dt : s a frame; None where no frames were computed
-    half_box : (3,) m
+    half_box : (3,) m; None where there is no box, as of recorded poses
     sizes : (n,) m, diameters of bounding spheres
     quaternions, spins : (n, 4) and (n, 3), rad/s; a body is turned by exp(spin t) quaternion
     surfaces : the meshes that bodies have, scaled by their sizes; none for spheres
     surface_of : (n,) which of them each body has
     leg_times, leg_bodies : (m,) s and body numbers, in the order of time; the first n are the bodies at time 0
     leg_positions, leg_velocities : (m, 3) m and m/s
+    leg_quaternions, leg_spins : (m, 4) and (m, 3) rad/s where each leg has its own, as of recorded poses; else None
     hit_times, hit_bodies, hit_walls : (k,) s, (k, 2) body numbers, the second -1 at a wall, and (k,) numbers of walls,
         -1 between bodies
     near : of a run that asked which pairs are near
@@ -78,7 +79,7 @@ class Recording:
     shape: str
     duration: float
     dt: float | None
-    half_box: Floats
+    half_box: Floats | None
     sizes: Floats
     quaternions: Floats
     spins: Floats
@@ -93,6 +94,8 @@ class Recording:
     hit_walls: Ints
     near: NearLines | None = None
     hit_points: Floats | None = None
+    leg_quaternions: Floats | None = None
+    leg_spins: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.sizes)
@@ -104,7 +107,8 @@ def write(connection: sqlite3.Connection, run: int, recording: Recording) -> Non
         "shape": recording.shape,
         "duration": recording.duration,
         "dt": recording.dt,
-        "half_box": recording.half_box.tolist(),
+        "turning_legs": recording.leg_quaternions is not None,
+        "half_box": None if recording.half_box is None else recording.half_box.tolist(),
         **_facts_of_query(recording),
     }
     digests = [surface.digest for surface in recording.surfaces]
@@ -129,7 +133,10 @@ def write(connection: sqlite3.Connection, run: int, recording: Recording) -> Non
         "INSERT INTO event (run, place, time, kind, first, second, wall) VALUES (?, ?, ?, ?, ?, ?, ?)",
         ((run, place, *hit) for place, hit in enumerate(_hits(recording))),
     )
-    legs = np.column_stack([recording.leg_bodies, recording.leg_positions, recording.leg_velocities]).astype("<f8")
+    columns = [recording.leg_bodies, recording.leg_positions, recording.leg_velocities]
+    if recording.leg_quaternions is not None and recording.leg_spins is not None:
+        columns += [recording.leg_quaternions, recording.leg_spins]
+    legs = np.column_stack(columns).astype("<f8")
     moments = groupby(range(len(legs)), key=lambda leg: float(recording.leg_times[leg]))
     connection.executemany(
         "INSERT INTO frame (run, place, time, data) VALUES (?, ?, ?, ?)",
@@ -219,15 +226,17 @@ def _read(
         "SELECT time, first, coalesce(second, -1), wall FROM event WHERE run = ? ORDER BY place", (run,)
     ).fetchall()
     frames = connection.execute("SELECT time, data FROM frame WHERE run = ? ORDER BY place", (run,)).fetchall()
-    legs = [np.frombuffer(data, "<f8").reshape(-1, 7) for _, data in frames]
-    rows = np.concatenate([*legs, np.empty((0, 7))])
+    turning = bool(facts.get("turning_legs"))
+    width = 14 if turning else 7
+    legs = [np.frombuffer(data, "<f8").reshape(-1, width) for _, data in frames]
+    rows = np.concatenate([*legs, np.empty((0, width))])
     each = np.frombuffer(bodies, "<f8").reshape(-1, 8)
     digests = facts.get("meshes", [] if digest is None else [digest])
     return Recording(
         shape=facts["shape"],
         duration=facts["duration"],
         dt=facts["dt"],
-        half_box=np.array(facts["half_box"]),
+        half_box=None if facts["half_box"] is None else np.array(facts["half_box"]),
         sizes=each[:, 0],
         quaternions=each[:, 1:5],
         spins=each[:, 5:],
@@ -236,12 +245,14 @@ def _read(
         leg_times=np.repeat([time for time, _ in frames], [len(leg) for leg in legs]).astype(np.float64),
         leg_bodies=rows[:, 0].astype(np.int64),
         leg_positions=rows[:, 1:4],
-        leg_velocities=rows[:, 4:],
+        leg_velocities=rows[:, 4:7],
         hit_times=np.array([time for time, *_ in hits], np.float64),
         hit_bodies=np.array([(i, j) for _, i, j, _ in hits], np.int64).reshape(-1, 2),
         hit_walls=np.array([-1 if wall is None else WALLS.index(wall) for *_, wall in hits], np.int64),
         near=_near_lines(facts["near"]) if "near" in facts else None,
         hit_points=_unpacked(facts["hit_points"], "<f8", 3) if "hit_points" in facts else None,
+        leg_quaternions=rows[:, 7:11] if turning else None,
+        leg_spins=rows[:, 11:] if turning else None,
     )
 
 

@@ -94,14 +94,14 @@ CREATE TABLE frame (
     run   INTEGER NOT NULL REFERENCES run,
     place INTEGER NOT NULL,
     time  REAL NOT NULL,                    -- s
-    data  BLOB NOT NULL,                    -- a row a body whose velocity is new: number, position x y z, velocity x y z
+    data  BLOB NOT NULL,                    -- a row a body whose velocity is new: number, position x y z, velocity x y z; of recorded poses quaternion w x y z, spin x y z too
     PRIMARY KEY (run, place)
 );
 
 -- What a replay shows, of a run whose scene was flown once more for it; its hits are in `event`, its legs in `frame`.
 CREATE TABLE recording (
     run    INTEGER PRIMARY KEY REFERENCES run,
-    facts  TEXT NOT NULL,                   -- JSON, {shape, duration, dt, half_box}; of several meshes {meshes: digests, mesh_of} too
+    facts  TEXT NOT NULL,                   -- JSON, {shape, duration, dt, half_box, turning_legs}; of several meshes {meshes: digests, mesh_of} too
     bodies BLOB NOT NULL,                   -- little-endian doubles, a row a body: size, quaternion w x y z, spin x y z
     mesh   TEXT REFERENCES mesh             -- the first of several; NULL for spheres
 );

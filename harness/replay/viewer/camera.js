@@ -25,15 +25,15 @@ export class Camera {
     this.zoom = Math.min(12, Math.max(0.4, this.zoom * factor));
   }
 
-  /** Matrix and axes for a box with these half sides and a picture of this aspect. */
-  view(half, aspect) {
+  /** Matrix and axes for a box with these half sides around a place, and a picture of this aspect. */
+  view(half, place, aspect) {
     const radius = Math.hypot(...half), narrow = 2 * Math.atan(Math.tan(FIELD / 2) * Math.min(1, aspect));
     const whole = (radius * 0.93) / Math.sin(narrow / 2), distance = whole / this.zoom;
     const back = [Math.cos(this.tilt) * Math.sin(this.turn), -Math.cos(this.tilt) * Math.cos(this.turn), Math.sin(this.tilt)];
     const forward = back.map((value) => -value);
     const right = unit(cross(forward, [0, 0, 1])), up = cross(right, forward);
     const lift = middle(half, forward, up, whole), aside = middle(half, forward, right, whole);
-    const eye = [0, 1, 2].map((axis) => back[axis] * distance + up[axis] * lift + right[axis] * aside);
+    const eye = [0, 1, 2].map((axis) => place[axis] + back[axis] * distance + up[axis] * lift + right[axis] * aside);
     const near = Math.max(distance - 1.2 * radius, distance * 0.01, radius * 0.005);
     const projection = perspective(FIELD, aspect, near, distance + 1.5 * radius);
     const matrix = multiply(projection, lookAt(eye, right, up, forward));

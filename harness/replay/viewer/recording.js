@@ -15,6 +15,8 @@ export class Recording {
     this.duration = text.duration;
     this.dt = text.dt;
     this.halfBox = text.half_box;
+    this.middle = text.middle;
+    this.boxed = text.box;
     this.facts = text.facts;
     this.count = this.sizes.length;
     this.hits = this.hit_times.length;
@@ -80,15 +82,18 @@ export class Recording {
 
   /** Centres (3 numbers a body) and quaternions (4, w x y z) of all bodies at a time. */
   posesAt(time, positions, quaternions) {
-    const { leg_times, leg_positions, leg_velocities, spins, quaternions: start } = this;
+    const { leg_times, leg_positions, leg_velocities } = this, turns = Boolean(this.leg_quaternions);
+    const spins = turns ? this.leg_spins : this.spins, start = turns ? this.leg_quaternions : this.quaternions;
     for (let i = 0; i < this.count; i++) {
       const leg = this.legAt(i, time), flown = time - leg_times[leg];
       for (let axis = 0; axis < 3; axis++)
         positions[3 * i + axis] = leg_positions[3 * leg + axis] + leg_velocities[3 * leg + axis] * flown;
-      const rate = this.spin_rates[i], c = Math.cos(0.5 * rate * time);
-      const s = rate > 0 ? Math.sin(0.5 * rate * time) / rate : 0;
-      const x = s * spins[3 * i], y = s * spins[3 * i + 1], z = s * spins[3 * i + 2];
-      const w0 = start[4 * i], x0 = start[4 * i + 1], y0 = start[4 * i + 2], z0 = start[4 * i + 3];
+      // of recorded poses every leg has its own turn, of flying bodies one spin lasts from the start
+      const at = turns ? leg : i, turned = turns ? flown : time;
+      const rate = turns ? Math.hypot(spins[3 * at], spins[3 * at + 1], spins[3 * at + 2]) : this.spin_rates[i];
+      const c = Math.cos(0.5 * rate * turned), s = rate > 0 ? Math.sin(0.5 * rate * turned) / rate : 0;
+      const x = s * spins[3 * at], y = s * spins[3 * at + 1], z = s * spins[3 * at + 2];
+      const w0 = start[4 * at], x0 = start[4 * at + 1], y0 = start[4 * at + 2], z0 = start[4 * at + 3];
       quaternions[4 * i] = c * w0 - x * x0 - y * y0 - z * z0;
       quaternions[4 * i + 1] = c * x0 + x * w0 + y * z0 - z * y0;
       quaternions[4 * i + 2] = c * y0 - x * z0 + y * w0 + z * x0;

@@ -150,7 +150,8 @@ export class Replay {
   }
 
   _view() {
-    return this.camera.view(this.recording.halfBox, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
+    const { halfBox, middle } = this.recording;
+    return this.camera.view(halfBox, middle, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
   }
 
   _requestDraw() {

@@ -65,10 +65,10 @@ export class Stage {
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...colours.page, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this._drawRoom(view, colours);
+    if (this.recording.boxed) this._drawRoom(view, colours);
     this._drawBodies(view, colours);
     gl.enable(gl.BLEND);
-    this._drawLines(view, this._edges(view, colours));
+    if (this.recording.boxed) this._drawLines(view, this._edges(view, colours));
     gl.depthMask(false);
     if (halos) this._drawSpheres(view, colours.halo, this._spheres(), 0.6);
     gl.disable(gl.DEPTH_TEST); // paths and the chosen body are shown even behind other bodies

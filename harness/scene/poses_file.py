@@ -1,0 +1,110 @@
+"""Reads poses that another program has recorded: a NumPy archive of three arrays, none of them of Python objects."""
+
+from __future__ import annotations
+
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.errors import InputError
+from harness.scene.recorded_poses import RecordedPoses, digest_of
+
+# B that a file may have, and that its arrays may need when they are unpacked.
+LARGEST = 256 * 2**20
+# By how much the length of a quaternion may be off 1: single precision leaves 1e-7.
+_OFF = 1e-6
+
+_SHAPES = {"time": "(f,)", "positions": "(f, n, 3)", "quaternions": "(f, n, 4)"}
+
+
+def read_poses(path: Path) -> RecordedPoses:
+    """Read a file of poses.
+
+    Parameters
+    ----------
+    path : of an .npz file with `time` (f,) s, `positions` (f, n, 3) m and `quaternions` (f, n, 4) w x y z
+
+    Raises
+    ------
+    InputError
+        If it is too large, damaged, or not what poses are.
+    """
+    arrays = {name: _real(path, name, array) for name, array in _arrays(path).items()}
+    time, positions, quaternions = arrays["time"], arrays["positions"], arrays["quaternions"]
+    _require_shapes(path, time, positions, quaternions)
+    for name, array in arrays.items():
+        if not np.isfinite(array).all():
+            frame = int(np.argmin(np.isfinite(array.reshape(len(array), -1)).all(axis=1)))
+            raise InputError(f"{path.name}: {name}[{frame}] has a value that is not finite")
+    later = np.diff(time) > 0.0
+    if not later.all():
+        frame = int(np.argmin(later))
+        raise InputError(
+            f"{path.name}: times must grow; time[{frame + 1}] is {time[frame + 1]:g} after {time[frame]:g}"
+        )
+    lengths = np.linalg.norm(quaternions, axis=2)
+    if (np.abs(lengths - 1.0) > _OFF).any():
+        worst, body = np.unravel_index(int(np.argmax(np.abs(lengths - 1.0))), lengths.shape)
+        length = lengths[worst, body]
+        raise InputError(
+            f"{path.name}: quaternions[{worst}, {body}] has length {length:.9g}; it must be 1, within 1e-6"
+        )
+    quaternions = quaternions / lengths[:, :, None]
+    return RecordedPoses(path.name, time, positions, quaternions, digest_of(time, positions, quaternions))
+
+
+def _arrays(path: Path) -> dict[str, NDArray[np.generic]]:
+    """The three arrays as they are, none of which is larger than it may be."""
+    size = path.stat().st_size
+    if size > LARGEST:
+        raise InputError(f"{path.name}: {size / 2**20:.0f} MiB are too large; poses may have {LARGEST // 2**20} MiB")
+    if not zipfile.is_zipfile(path):
+        raise InputError(f"{path.name}: this is no .npz file, or it is cut short; numpy.savez writes one")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            found = {info.filename.removesuffix(".npy"): info.file_size for info in archive.infolist()}
+        lacking = [name for name in _SHAPES if name not in found]
+        if lacking:
+            has = ", ".join(found) or "nothing"
+            raise InputError(f"{path.name}: there is no array {lacking[0]} {_SHAPES[lacking[0]]} in it; it has {has}")
+        unpacked = sum(found[name] for name in _SHAPES)
+        if unpacked > LARGEST:
+            much = f"{unpacked / 2**20:.0f} MiB"
+            raise InputError(f"{path.name}: {much} unpacked are too large; poses may have {LARGEST // 2**20} MiB")
+        with np.load(path, allow_pickle=False) as archive:
+            return {name: np.asarray(archive[name]) for name in _SHAPES}
+    except ValueError as error:
+        if "pickle" in str(error).lower():
+            raise InputError(f"{path.name}: it holds pickled Python objects, which are not read") from error
+        raise InputError(f"{path.name}: it is damaged: {error}") from error
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, KeyError, NotImplementedError) as error:
+        raise InputError(f"{path.name}: it is damaged or cut short: {error}") from error
+
+
+def _real(path: Path, name: str, array: NDArray[np.generic]) -> NDArray[np.float64]:
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"{path.name}: {name} must hold real numbers, not {array.dtype}")
+    return np.ascontiguousarray(array, np.float64)
+
+
+def _require_shapes(
+    path: Path, time: NDArray[np.float64], positions: NDArray[np.float64], quaternions: NDArray[np.float64]
+) -> None:
+    for name, array, dimensions in (("time", time, 1), ("positions", positions, 3), ("quaternions", quaternions, 3)):
+        if array.ndim != dimensions:
+            raise InputError(f"{path.name}: {name} must have the shape {_SHAPES[name]}, not {array.shape}")
+    frames = len(time)
+    if frames < 2:
+        raise InputError(f"{path.name}: there must be two times at least, the start and a frame; there are {frames}")
+    bodies = positions.shape[1]
+    if bodies < 1:
+        raise InputError(f"{path.name}: positions are of no body")
+    for name, array, last in (("positions", positions, 3), ("quaternions", quaternions, 4)):
+        if array.shape != (frames, bodies, last):
+            needed = (frames, bodies, last)
+            raise InputError(
+                f"{path.name}: {name} must have the shape {needed} like the other arrays, not {array.shape}"
+            )
