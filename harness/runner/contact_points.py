@@ -8,6 +8,7 @@ from harness.arrays import Floats
 from harness.methods.near_pairs import gap_search
 from harness.motion.hits import Trace
 from harness.motion.kinematics import Trajectory
+from harness.motion.recorded_motion import trajectory_of
 from harness.narrowphase.gap import EXACT
 from harness.scene.scene import Scene
 
@@ -28,7 +29,7 @@ def contact_points(scene: Scene, trace: Trace) -> Floats:
     if not len(between):
         return found
     search = gap_search(scene)
-    trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
+    trajectory = trajectory_of(scene, folded=True, turning=scene.shape != "sphere")
     for hit in between.tolist():
         pair = trace.bodies[hit : hit + 1]
         for back in _BACK:

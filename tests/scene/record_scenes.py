@@ -1,0 +1,172 @@
+"""Records the motion of `experiments/recorded/`: a bin that pybullet fills, and an arm that sweeps through obstacles.
+
+    python -m tests.scene.record_scenes FOLDER
+
+writes bin.npz, bin.yaml, bin.off, arm.npz and arm.yaml. What it is made of stands in the heads of the YAML files.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pybullet
+import pybullet_data
+
+from harness.scene.mesh_file import read_mesh
+
+DATA = Path(pybullet_data.getDataPath())
+SEED = 259
+
+# The bin: an open box with walls that lean outwards.
+FLOOR, RIM, HEIGHT, WALL = 1.1, 1.8, 1.1, 0.1
+BODIES = 60
+STEP, STEPS_A_FRAME, FRAMES = 1 / 480, 20, 200
+# Frames at the end, in which all bodies rest.
+REST = 12
+SIZES = {
+    "cube.obj": 0.32,
+    "domino/domino.obj": 0.34,
+    "jenga/jenga.obj": 0.4,
+    "random_urdfs/000/000.obj": 0.34,
+    "soccerball.obj": 0.3,
+    "sphere_smooth.obj": 0.26,
+    "teddy2_VHACD_CHs.obj": 0.42,
+    "toys/prism.obj": 0.34,
+}
+
+ARM = "kuka_iiwa/model.urdf"
+LINKS = [f"kuka_iiwa/meshes/link_{number}.stl" for number in range(8)]
+OBSTACLES = [
+    ("soccerball.obj", 0.35, (0.45, 0.25, 0.75)),
+    ("duck.obj", 0.4, (0.05, 0.55, 0.55)),
+    ("cube.obj", 0.4, (-0.5, 0.2, 0.6)),
+    ("teddy2_VHACD_CHs.obj", 0.4, (-0.3, -0.5, 0.7)),
+    ("random_urdfs/000/000.obj", 0.3, (0.4, -0.4, 0.9)),
+]
+ARM_FRAMES, ARM_SECONDS = 240, 8.0
+
+
+STILL = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+
+
+def bin_mesh():
+    """(16, 3) vertices and (28, 3) faces of the bin, closed."""
+    square = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
+    rings = [(FLOOR / 2 + WALL, -WALL), (RIM / 2 + WALL, HEIGHT), (RIM / 2, HEIGHT), (FLOOR / 2, 0.0)]
+    vertices = np.concatenate([np.column_stack([half * square, np.full(4, z)]) for half, z in rings])
+    faces = [[0, 2, 1], [0, 3, 2], [12, 13, 14], [12, 14, 15]]
+    for ring in range(3):
+        for side in range(4):
+            a, b = 4 * ring + side, 4 * ring + (side + 1) % 4
+            faces += [[a, b, b + 4], [a, b + 4, a + 4]]
+    return vertices, np.array(faces)
+
+
+def write_off(path, vertices, faces):
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0", *(" ".join(f"{x:.17g}" for x in row) for row in vertices)]
+    path.write_text("\n".join([*lines, *(f"3 {a} {b} {c}" for a, b, c in faces)]) + "\n")
+
+
+def scale_of(name):
+    """What makes a mesh as large as its body."""
+    return SIZES[name] / read_mesh(DATA / name).diameter
+
+
+def fill_bin():
+    """Drop bodies into the bin until they rest; the poses of all frames."""
+    rng, names = np.random.default_rng(SEED), list(SIZES)
+    pybullet.connect(pybullet.DIRECT)
+    pybullet.setGravity(0, 0, -9.81)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP, numSolverIterations=100)
+    corners = bin_mesh()[0].reshape(4, 4, 3)
+    floor = corners[[0, 3]].reshape(-1, 3)
+    walls = [corners[:, [side, (side + 1) % 4]].reshape(-1, 3) for side in range(4)]
+    for slab in (floor, *walls):  # convex: thin bodies are pressed through a surface of triangles
+        shape = pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=slab.tolist())
+        pybullet.createMultiBody(0, shape)
+    for axis in range(2):  # a chute above the rim: nothing bounces out of the bin
+        for side in (-1.0, 1.0):
+            half, at = [RIM, RIM, 2.0], [0.0, 0.0, HEIGHT + 2.0]
+            half[axis], at[axis] = 0.2, side * (RIM / 2 + 0.2)
+            pybullet.createMultiBody(
+                0, pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half), basePosition=at
+            )
+    bodies = []
+    shapes = {
+        name: pybullet.createCollisionShape(
+            pybullet.GEOM_MESH, fileName=str(DATA / name), meshScale=[scale_of(name)] * 3
+        )
+        for name in names
+    }
+    for number in range(BODIES):
+        layer, place = divmod(number, 9)
+        x, y = 0.38 * (place % 3 - 1), 0.38 * (place // 3 - 1)
+        turn = rng.normal(size=4)
+        at = [x + rng.uniform(-0.01, 0.01), y + rng.uniform(-0.01, 0.01), 0.4 + 0.45 * layer]
+        shape = shapes[names[number % len(names)]]
+        bodies.append(
+            pybullet.createMultiBody(0.2, shape, basePosition=at, baseOrientation=turn / np.linalg.norm(turn))
+        )
+        pybullet.changeDynamics(
+            bodies[-1], -1, rollingFriction=0.01, spinningFriction=0.01, linearDamping=0.2, angularDamping=0.2
+        )
+    poses = []
+    for _ in range(FRAMES):
+        poses.append([STILL, *(pybullet.getBasePositionAndOrientation(body) for body in bodies)])
+        for _ in range(STEPS_A_FRAME):
+            pybullet.stepSimulation()
+    pybullet.disconnect()
+    return np.arange(FRAMES) * STEP * STEPS_A_FRAME, poses
+
+
+def sweep_arm():
+    """Joints of the arm on sines of different rates, through obstacles that stand still; the poses of all frames."""
+    pybullet.connect(pybullet.DIRECT)
+    arm = pybullet.loadURDF(str(DATA / ARM), useFixedBase=True)
+    time = np.linspace(0.0, ARM_SECONDS, ARM_FRAMES + 1)
+    still = [(at, (0.0, 0.0, 0.0, 1.0)) for _, _, at in OBSTACLES]
+    poses = []
+    for now in time:
+        for joint in range(pybullet.getNumJoints(arm)):
+            pybullet.resetJointState(arm, joint, 1.4 * np.sin((0.5 + 0.13 * joint) * now + joint))
+        links = [pybullet.getLinkState(arm, joint, computeForwardKinematics=True)[4:6] for joint in range(7)]
+        base = pybullet.multiplyTransforms(
+            *pybullet.getBasePositionAndOrientation(arm),
+            *pybullet.invertTransform(*pybullet.getDynamicsInfo(arm, -1)[3:5]),
+        )
+        poses.append([base, *links, *still])
+    pybullet.disconnect()
+    return time, poses
+
+
+def save(path, time, poses):
+    """An .npz as experiments read it; a quaternion of pybullet is x y z w."""
+    positions = np.array([[at for at, _ in frame] for frame in poses], np.float32)
+    turns = np.array([[turn for _, turn in frame] for frame in poses])[:, :, [3, 0, 1, 2]].astype(np.float32)
+    np.savez_compressed(path, time=time, positions=positions, quaternions=turns)
+
+
+def package(name):
+    return f"package:pybullet_data/{name}"
+
+
+def main(folder):
+    write_off(folder / "bin.off", *bin_mesh())
+    time, poses = fill_bin()
+    save(folder / "bin.npz", time, poses)
+    save(folder / "bin-at-rest.npz", time[-REST:], poses[-REST:])
+    save(folder / "arm.npz", *sweep_arm())
+    rows = ["{mesh: bin.off, size: native}"]
+    rows += [
+        f"{{mesh: {json.dumps(package(name))}, size: {SIZES[name]}}}"
+        for name in (list(SIZES)[k % 8] for k in range(BODIES))
+    ]
+    (folder / "bin-bodies.txt").write_text("\n".join(f"    - {row}" for row in rows) + "\n")
+    arm = [f"{{mesh: {json.dumps(package(name))}, size: native}}" for name in LINKS]
+    arm += [f"{{mesh: {json.dumps(package(name))}, size: {size}}}" for name, size, _ in OBSTACLES]
+    (folder / "arm-bodies.txt").write_text("\n".join(f"    - {row}" for row in arm) + "\n")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
