@@ -8,6 +8,7 @@ parent adopts orphans, as a process should whose only work is to run others.
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import socket
@@ -273,6 +274,30 @@ class Child:
             if self._program is not None:
                 self._program.returncode = self._ending.code  # it need not be waited for again
         return self._ending
+
+
+def guarded(main: Callable[[Channel], None]) -> Callable[[Channel], None]:
+    """What a child does so that nothing that `main` starts outlives it, however it ends: `main`, in a child of its own.
+
+    For processes with several children, which therefore adopt no orphans. The child adopts what `main` leaves behind,
+    ends it, and then itself as `main` has ended.
+
+    Parameters
+    ----------
+    main : as for `Child.fork`; what is sent through its channel is sent to the parent of both
+    """
+
+    def guard(channel: Channel) -> None:
+        with Child.fork(lambda _: main(channel)) as child:
+            child.receive(math.inf)
+            ending = child.end()
+        if ending.signal:
+            with suppress(OSError):  # SIGKILL is never answered
+                signal.signal(ending.signal, signal.SIG_DFL)
+            os.kill(os.getpid(), ending.signal)
+        os._exit(ending.code)
+
+    return guard
 
 
 def end(child: int) -> Ending:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from functools import update_wrapper
+from functools import cache, update_wrapper
 from threading import RLock
 from typing import Any, TypeVar, cast
 
@@ -89,6 +89,11 @@ def written_as(compiled: Callable[..., Any]) -> Callable[[Function], Function]:
     Parameters
     ----------
     compiled : takes the types of the arguments and gives the function to write out, as `numba.extending.overload` asks
+
+    Notes
+    -----
+    Nobody may call it who writes to an array in a tuple: numba takes such a write for dead code once it has written a
+    function out in this way, and drops it. Hence `first_or_call`.
     """
 
     def named(function: Function) -> Function:
@@ -101,6 +106,39 @@ def written_as(compiled: Callable[..., Any]) -> Callable[[Function], Function]:
         return cast(Function, _Waiting(function, made))
 
     return named
+
+
+def first_or_call(context: Any, body: Callable[..., Any] | None, *kinds: Any) -> Any:
+    """What an `instruction` gives that calls a function, or is its first argument as it stands.
+
+    So a kernel can do one thing or another by the types of what it is given. References to arrays are counted as the
+    caller counts them: it may be called in a loop or a step too.
+
+    Parameters
+    ----------
+    context : numba's, of types
+    body : the function to call; None for the first argument
+    kinds : the types of the arguments
+    """
+    from numba.core import types
+    from numba.core.imputils import impl_ret_borrowed
+
+    if body is None:
+        borrowed: Any = impl_ret_borrowed
+        return kinds[0](*kinds), lambda context, builder, signature, arguments: borrowed(
+            context, builder, signature.return_type, arguments[0]
+        )
+    dispatched: Any = types.Dispatcher(_to_be_typed(body))
+    signature = context.resolve_function_type(dispatched, kinds, {})
+    return signature, lambda context, builder, signature, arguments: context.compile_internal(
+        builder, body, signature, arguments
+    )
+
+
+@cache
+def _to_be_typed(body: Callable[..., Any]) -> Any:
+    """A function as numba types it; kept, because numba's own types do not keep it."""
+    return _njit(error_model="numpy")(body)
 
 
 _lock = RLock()

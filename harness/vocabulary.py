@@ -26,6 +26,10 @@ QUERIES: dict[Query, str] = {
 NEAR_QUERIES: tuple[Query, ...] = ("tolerance", "distance")
 """Those that are asked about pairs within a gap, `engine.within`."""
 
+NativeSize = Literal["native"]
+"""The size of a body whose mesh is as large as its file says, a unit of the file taken for a metre."""
+NATIVE: NativeSize = "native"
+
 Response = Literal["reflect", "elastic", "none"]
 """What a hit does: mirror each velocity along the line of centres, pass an impulse by mass, nothing."""
 

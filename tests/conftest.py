@@ -101,7 +101,7 @@ def random_scene(shape: str, count: int, side: float, seed: int = 0) -> Scene:
         spins=rng.normal(size=(count, 3)),
         quaternions=quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True),
     )
-    return Scene(shape, cube_mesh(), bodies, Box(np.full(3, side / 2)))
+    return Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, side / 2)))
 
 
 @pytest.fixture

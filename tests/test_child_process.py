@@ -6,12 +6,13 @@ import subprocess
 import sys
 import textwrap
 import time
+from contextlib import suppress
 from multiprocessing import Pipe
 
 import psutil
 import pytest
 
-from harness.child_process import Child, Ending
+from harness.child_process import Child, Ending, guarded
 from harness.process_limits import limit
 
 SOON = 20.0
@@ -228,3 +229,25 @@ def test_a_limit_that_is_lower_already_is_not_raised():
 
     with Child.fork(lower_twice) as child:
         assert child.receive(SOON) == b"(1000, 1000)"
+
+
+@pytest.mark.parametrize("way", [lambda: os._exit(3), os.abort, lambda: os.kill(os.getpid(), 9), lambda: None])
+def test_what_a_guarded_child_left_behind_ends_with_it_whatever_its_end(way):
+    def leave(channel):
+        started = os.fork()
+        if started == 0:
+            os.setsid()
+            time.sleep(600)
+        channel.send(str(started).encode())
+        channel.send(channel.receive())
+        way()
+
+    with Child.fork(leave) as plain, Child.fork(guarded(leave)) as child:
+        for one in (plain, child):
+            left = int(one.receive(SOON))
+            assert one.ask(b"go", SOON) == b"go"
+            assert one.receive(SOON) == "ended"
+            assert gone(left, 0) == (one is child)
+            with suppress(ProcessLookupError):
+                os.kill(left, 9)
+        assert child.end() == plain.end()

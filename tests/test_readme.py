@@ -12,6 +12,7 @@ from harness.backends.protocol import Backend
 from harness.cli.main import COMMANDS, main
 from harness.experiment.load import load_text
 from harness.runner.scene_of_point import build_scene
+from harness.scene.scene_files import SceneFiles
 
 README = Path(__file__).parents[1] / "README.md"
 
@@ -54,7 +55,7 @@ def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
     mine, fcl = namespace["Mine"](), Fcl()
     assert isinstance(mine, Backend)
     text = "title: t\nscene: {shape: sphere, count: 40, box: [4, 4, 4], overlap: allow}\n"
-    scene = build_scene(load_text(text, "readme.yaml").points[0], None)
+    scene = build_scene(load_text(text, "readme.yaml").points[0], SceneFiles())
     for backend in (mine, fcl):
         backend.load(scene)
     found = [backend.pairs(scene.bodies.positions, scene.bodies.quaternions) for backend in (mine, fcl)]

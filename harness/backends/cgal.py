@@ -29,11 +29,11 @@ class Cgal:
         return 1e-14
 
     def load(self, scene: Scene) -> None:
-        self._radii, self._sizes = scene.enclosing_radii, scene.bodies.sizes.tolist()
+        self._radii, self._shared = scene.enclosing_radii, scene.solids
         self._solids = {}
-        for size in dict.fromkeys(self._sizes):
-            solid = scene.solid_of(size)
-            self._solids[size] = solid.vertices, solid.faces[has_area(*solid)].astype(np.int64)
+        for mesh, size in dict.fromkeys(self._shared):
+            solid = scene.solid_of(size, mesh)
+            self._solids[mesh, size] = solid.vertices, solid.faces[has_area(*solid)].astype(np.int64)
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         require_finite(positions, quaternions)
@@ -41,7 +41,7 @@ class Cgal:
         close = close_pairs(positions, near_radii(self._radii, 0.0))
         placed = {}
         for body in np.unique(close).tolist():
-            vertices, faces = self._solids[self._sizes[body]]
+            vertices, faces = self._solids[self._shared[body]]
             placed[body] = vertices @ turns[body].T + positions[body], faces
         touching = [
             pair

@@ -10,7 +10,7 @@ from harness.backends.poses import SLACK, near_pairs, require_finite, rotations
 from harness.backends.protocol import NearPairs
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Surface
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 # with coal's own 1e-6 more verdicts near touching are wrong
@@ -52,16 +52,15 @@ class Coal:
         self._distance.gjk_tolerance = max(self.accuracy, _GJK_TOLERANCE)
         self._margin = _SPHERES_MARGIN if scene.shape == "sphere" else 0.0
         self._unit = unit_of(scene.bodies.sizes)
-        sizes = (scene.bodies.sizes / self._unit).tolist()
-        count = len(sizes)
+        count = len(scene.bodies)
         self._meshes: list[coal.CollisionObject] = []
         if scene.shape == "mesh":
-            models = {size: _model(_solid(scene, size, self._unit)) for size in dict.fromkeys(sizes)}
-            self._meshes = [coal.CollisionObject(models[size], coal.Transform3s()) for size in sizes]
+            models = {solid: _model(_in_units(scene, solid, self._unit)) for solid in dict.fromkeys(scene.solids)}
+            self._meshes = [coal.CollisionObject(models[solid], coal.Transform3s()) for solid in scene.solids]
         convex = _hull if scene.shape == "hull" else _sphere
         self._objects = []
-        for body, size in enumerate(sizes):
-            geometry = convex(scene, size, self._unit)
+        for body, solid in enumerate(scene.solids):
+            geometry = convex(scene, solid, self._unit)
             # a contact holds new objects for its geometries; only this number says which body one belongs to
             geometry.cost_density = float(body)
             self._objects.append(coal.CollisionObject(geometry, coal.Transform3s()))
@@ -149,17 +148,18 @@ def _place(objects: list[coal.CollisionObject], places: Floats, turns: Floats) -
         held.computeAABB()
 
 
-def _solid(scene: Scene, size: float, unit: float) -> Surface:
-    solid = scene.solid_of(size * unit)
-    return Surface(solid.vertices / unit, solid.faces)
+def _in_units(scene: Scene, solid: Solid, unit: float) -> Surface:
+    mesh, size = solid
+    surface = scene.solid_of(size, mesh)
+    return Surface(surface.vertices / unit, surface.faces)
 
 
-def _sphere(scene: Scene, size: float, unit: float) -> coal.Sphere:
-    return coal.Sphere(size / 2)
+def _sphere(scene: Scene, solid: Solid, unit: float) -> coal.Sphere:
+    return coal.Sphere(solid[1] / unit / 2)
 
 
-def _hull(scene: Scene, size: float, unit: float) -> coal.Convex:
-    vertices, faces = _lists(_solid(scene, size, unit))
+def _hull(scene: Scene, solid: Solid, unit: float) -> coal.Convex:
+    vertices, faces = _lists(_in_units(scene, solid, unit))
     return coal.Convex(vertices, faces)
 
 

@@ -22,7 +22,7 @@ from harness.backends.poses import near_pairs, require_finite, rotations
 from harness.backends.protocol import NearPairs
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Surface
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 
@@ -48,11 +48,11 @@ class Drake:
         graph = self._graph = SceneGraph()
         self._source = graph.RegisterSource("bodies")
         self._frames, self._numbers = [], {}
-        sizes = scene.bodies.sizes.tolist()
-        shapes = {size: _shape(scene, size, self._unit) for size in dict.fromkeys(sizes)}
-        for body, size in enumerate(sizes):
+        solids = scene.solids
+        shapes = {solid: _shape(scene, solid, self._unit) for solid in dict.fromkeys(solids)}
+        for body, solid in enumerate(solids):
             frame = graph.RegisterFrame(self._source, GeometryFrame(str(body)))
-            instance = GeometryInstance(RigidTransform(), shapes[size], str(body))
+            instance = GeometryInstance(RigidTransform(), shapes[solid], str(body))
             geometry = graph.RegisterGeometry(self._source, frame, instance)
             graph.AssignRole(self._source, geometry, ProximityProperties())
             self._frames.append(frame)
@@ -89,10 +89,11 @@ class Drake:
         return self._graph.get_query_output_port().Eval(self._context)
 
 
-def _shape(scene: Scene, size: float, unit: float) -> Sphere | Convex:
-    if scene.shape == "sphere" or scene.mesh is None:
+def _shape(scene: Scene, shared: Solid, unit: float) -> Sphere | Convex:
+    mesh, size = shared
+    if scene.shape == "sphere":
         return Sphere(size / unit / 2)
-    solid = scene.solid_of(size)
+    solid = scene.solid_of(size, mesh)
     file = MemoryFile(_obj(Surface(solid.vertices / unit, solid.faces)), ".obj", "hull")
     return Convex(InMemoryMesh(mesh_file=file), 1.0)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import chain, combinations, compress, repeat
+from typing import TypeVar
 
 import fcl
 import numpy as np
@@ -19,6 +20,8 @@ from harness.vocabulary import Query, Shape
 
 # Up to so many bodies the pairs are kept in lists (8 MB), which saves a tenth of the time.
 MOST_LISTED = 1000
+
+T = TypeVar("T")
 
 
 class Fcl:
@@ -50,8 +53,12 @@ class Fcl:
         self._tree_radii = scene.enclosing_radii
         self._pair_gaps: FclPairGaps | None = None
         self._bodies = FclObjects(scene)
+        self._count = len(scene.bodies)
+        ignored = {(i, j) for i, j in scene.ignored.tolist()}
+        # of all pairs, those that are asked about; no list where that is all
+        self._asked = [pair not in ignored for pair in combinations(range(self._count), 2)] if ignored else None
         first, second = self._both_sides()
-        self._listed = (list(first), list(second)) if len(scene.bodies) <= MOST_LISTED else None
+        self._listed = (list(first), list(second)) if self._count <= MOST_LISTED else None
 
     @property
     def counters(self) -> dict[str, float]:
@@ -60,13 +67,12 @@ class Fcl:
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         self._bodies.place(positions, quaternions)
-        count = len(positions)
         # A result is reused because making one costs as much as a far pair, but for one call only: it keeps every
         # contact it was ever given, and its own verdict, once true, stays so. What `collide` returns is the pair's.
         result = fcl.CollisionResult()
         verdicts = map(fcl.collide, *(self._listed or self._both_sides()), repeat(self._request), repeat(result))
-        touching = list(compress(combinations(range(count), 2), verdicts))
-        self._tests += count * (count - 1) // 2
+        touching = list(compress(self._of_asked(combinations(range(self._count), 2)), verdicts))
+        self._tests += self._count * (self._count - 1) // 2 if self._asked is None else sum(self._asked)
         return np.array(touching, np.int64).reshape(-1, 2)
 
     def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
@@ -102,7 +108,12 @@ class Fcl:
         """The first and the second object of every pair, in order."""
         objects = self._bodies.objects
         first = chain.from_iterable(map(repeat, objects, range(len(objects) - 1, -1, -1)))
-        return first, chain.from_iterable(objects[i:] for i in range(1, len(objects)))
+        second = chain.from_iterable(objects[i:] for i in range(1, len(objects)))
+        return self._of_asked(first), self._of_asked(second)
+
+    def _of_asked(self, of_pairs: Iterable[T]) -> Iterable[T]:
+        """What belongs to the pairs that are asked about, of one thing for each pair."""
+        return of_pairs if self._asked is None else compress(of_pairs, self._asked)
 
 
 BACKEND = Fcl

@@ -1,4 +1,5 @@
-"""Bodies as FCL collision objects: spheres, convex hulls or triangle meshes, one geometry for all bodies of a size.
+"""Bodies as FCL collision objects: spheres, convex hulls or triangle meshes, one geometry for all bodies
+of a mesh and a size.
 
 FCL checks little: with an empty mesh, an index out of range or a pose that is not finite it crashes or answers wrongly.
 Meshes and hulls are valid here, for the scene has checked them, but for faces without area, which make false hits up to
@@ -13,7 +14,7 @@ import numpy as np
 from harness.arrays import Floats, Ints
 from harness.narrowphase.units import unit_of_smallest
 from harness.scene.mesh import Triangles, has_area
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 
 UNITS = "the smallest size is about 32, by a power of two"
 # FCL's test of hulls errs by absolute lengths near 1e-8. In units of the median size it misjudges hulls 2000 times
@@ -41,7 +42,7 @@ class FclObjects:
     Parameters
     ----------
     scene : Scene
-    shared : whether bodies of the same size share one geometry
+    shared : whether bodies of the same mesh and size share one geometry
 
     Attributes
     ----------
@@ -53,12 +54,12 @@ class FclObjects:
     def __init__(self, scene: Scene, *, shared: bool = True) -> None:
         self.unit = fcl_unit(scene.bodies.sizes)
         self._turning = scene.shape != "sphere"
-        sizes = (scene.bodies.sizes / self.unit).tolist()
+        solids = scene.solids
         if shared:
-            by_size = {size: _geometry(scene, size, self.unit) for size in dict.fromkeys(sizes)}
-            self.geometries = [by_size[size] for size in sizes]
+            geometries = {solid: _geometry(scene, solid, self.unit) for solid in dict.fromkeys(solids)}
+            self.geometries = [geometries[solid] for solid in solids]
         else:
-            self.geometries = [_geometry(scene, size, self.unit) for size in sizes]
+            self.geometries = [_geometry(scene, solid, self.unit) for solid in solids]
         self.objects = [fcl.CollisionObject(geometry) for geometry in self.geometries]
 
     def place(self, positions: Floats, quaternions: Floats, bodies: Ints | None = None) -> None:
@@ -95,11 +96,12 @@ class FclObjects:
         self.objects[body].setTranslation(position / self.unit)
 
 
-def _geometry(scene: Scene, size: float, unit: float) -> fcl.CollisionGeometry:
-    """Of a body whose size is so many units; m each."""
-    if scene.shape == "sphere" or scene.mesh is None:
-        return fcl.Sphere(size / 2)
-    solid = scene.solid_of(size * unit)
+def _geometry(scene: Scene, shared: Solid, unit: float) -> fcl.CollisionGeometry:
+    """Of bodies that share a mesh and a size, in units; m each."""
+    mesh, size = shared
+    if scene.shape == "sphere":
+        return fcl.Sphere(size / unit / 2)
+    solid = scene.solid_of(size, mesh)
     # the unit is a power of two, so neither product loses a digit
     if scene.shape == "hull":
         return _convex(solid.vertices / unit, solid.faces)

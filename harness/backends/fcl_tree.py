@@ -29,7 +29,7 @@ class FclTree:
 
     def __init__(self, scene: Scene, radii: Floats | None = None) -> None:
         bodies = replace(scene.bodies, sizes=2 * (scene.enclosing_radii if radii is None else radii))
-        spheres = Scene("sphere", scene.mesh, bodies, scene.box)
+        spheres = Scene("sphere", (), bodies, scene.box)
         self.pair_tests = 0
         # The tree returns other objects than it was given. A contact names geometries, so that a body is identified by
         # its own; each therefore has a sphere of its own.

@@ -19,7 +19,7 @@ from harness.backends.poses import (
 from harness.backends.protocol import ImpactTimes
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Triangles, has_area
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 # rad that a body turns in a part of a frame: between its ends vertices move straight, inside of their arcs by at most
@@ -51,14 +51,15 @@ class Ipctk:
     def load(self, scene: Scene) -> None:
         ipctk.set_num_threads(1)
         self._unit, self._radii = unit_of(scene.bodies.sizes), scene.enclosing_radii
-        self._sizes = scene.bodies.sizes.tolist()
-        self._vertices: dict[float, Floats] = {}
-        self._faces: dict[float, Triangles] = {}
-        for size in dict.fromkeys(self._sizes):
-            solid = scene.solid_of(size)
-            self._vertices[size] = solid.vertices / self._unit
-            self._faces[size] = solid.faces[has_area(*solid)]
-        self._meshes: dict[tuple[float, float], ipctk.CollisionMesh] = {}
+        self._solids = scene.solids
+        self._vertices: dict[Solid, Floats] = {}
+        self._faces: dict[Solid, Triangles] = {}
+        for shared in dict.fromkeys(self._solids):
+            mesh, size = shared
+            solid = scene.solid_of(size, mesh)
+            self._vertices[shared] = solid.vertices / self._unit
+            self._faces[shared] = solid.faces[has_area(*solid)]
+        self._meshes: dict[tuple[Solid, Solid], ipctk.CollisionMesh] = {}
         self._broad_phase = ipctk.LBVH()
         self._advancement = ipctk.AdditiveCCD(conservative_rescaling=1.0 - _LEFT)
 
@@ -92,7 +93,7 @@ class Ipctk:
     def _placed(self, positions: Floats, quaternions: Floats, bodies: Pairs) -> dict[int, Floats]:
         """The vertices of some bodies, in units."""
         turns, places = rotations(quaternions).as_matrix(), positions / self._unit
-        return {body: self._vertices[self._sizes[body]] @ turns[body].T + places[body] for body in bodies.tolist()}
+        return {body: self._vertices[self._solids[body]] @ turns[body].T + places[body] for body in bodies.tolist()}
 
     def _intersect(self, i: int, j: int, placed: dict[int, Floats]) -> bool:
         vertices = np.asfortranarray(np.concatenate([placed[i], placed[j]]))
@@ -112,17 +113,18 @@ class Ipctk:
         )
 
     def _mesh(self, i: int, j: int) -> ipctk.CollisionMesh:
-        """The two bodies as one mesh, which does not collide with itself but for them; one for all pairs of sizes."""
-        sizes = self._sizes[i], self._sizes[j]
-        if sizes not in self._meshes:
-            vertices = [self._vertices[size] for size in sizes]
-            faces = np.concatenate([self._faces[sizes[0]], self._faces[sizes[1]] + len(vertices[0])]).astype(np.int32)
+        """The two bodies as one mesh, which does not collide with itself but for them; one for pairs alike."""
+        solids = self._solids[i], self._solids[j]
+        if solids not in self._meshes:
+            vertices = [self._vertices[solid] for solid in solids]
+            faces = np.concatenate([self._faces[solids[0]], self._faces[solids[1]] + len(vertices[0])])
+            faces = faces.astype(np.int32)
             faces = np.asfortranarray(faces)
             mesh = ipctk.CollisionMesh(np.asfortranarray(np.concatenate(vertices)), ipctk.edges(faces), faces)
             owners = np.repeat([0, 1], [len(part) for part in vertices]).astype(np.int32)
             mesh.can_collide = ipctk.make_vertex_patches_filter(owners)
-            self._meshes[sizes] = mesh
-        return self._meshes[sizes]
+            self._meshes[solids] = mesh
+        return self._meshes[solids]
 
 
 BACKEND = Ipctk

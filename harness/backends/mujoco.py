@@ -15,7 +15,7 @@ from harness.backends.protocol import NearPairs
 from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.hull import Hull, convex_hull
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 # B for contacts (each takes some 600): of 64 neighbours a body, as only deep overlaps of unlike sizes have; memory that
@@ -54,9 +54,9 @@ class MuJoCo:
         return 1e-15 if shape == "sphere" else 1e-7
 
     @property
-    def own_hulls(self) -> dict[float, Hull]:
-        """The hulls after their rounding, by the size of a body."""
-        return {size: self._read_back(body) for size, body in self._of_size.items()}
+    def own_hulls(self) -> dict[Solid, Hull]:
+        """The hulls after their rounding, by the mesh and the size of a body."""
+        return {solid: self._read_back(body) for solid, body in self._first.items()}
 
     def load(self, scene: Scene) -> None:
         self._unit, self._scene = unit_of(scene.bodies.sizes), scene
@@ -69,10 +69,10 @@ class MuJoCo:
         spec.option.ccd_iterations = _CCD_ITERATIONS
         # further contacts of a pair that touches already
         spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
-        self._of_size: dict[float, int] = {}
-        for body, size in enumerate(scene.bodies.sizes.tolist()):
-            self._add_body(spec, scene, size)
-            self._of_size.setdefault(size, body)
+        self._first: dict[Solid, int] = {}
+        for body, solid in enumerate(scene.solids):
+            self._add_body(spec, scene, solid)
+            self._first.setdefault(solid, body)
         self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
 
@@ -104,21 +104,23 @@ class MuJoCo:
         mujoco.mj_collision(model, data)
         return not data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number
 
-    def _add_body(self, spec: mujoco.MjSpec, scene: Scene, size: float) -> None:
+    def _add_body(self, spec: mujoco.MjSpec, scene: Scene, solid: Solid) -> None:
         body = spec.worldbody.add_body()
         body.add_freejoint()
-        if scene.shape == "sphere" or scene.mesh is None:
+        number, size = solid
+        if scene.shape == "sphere":
             radius = size / self._unit / 2
             body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], mass=1.0)
             return
-        if scene.mesh.flat:
+        mesh = scene.meshes[number]
+        if mesh.flat:
             raise InputError("it replaces each mesh by its hull, and a flat mesh has none")
-        if size not in self._of_size:
-            vertices = scene.mesh.hull.vertices * (size / self._unit)
+        if solid not in self._first:
+            vertices = mesh.hull.vertices * (size / self._unit)
             spec.add_mesh(
-                name=str(size), uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+                name=str(solid), uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
             )
-        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=str(size), mass=1.0)
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=str(solid), mass=1.0)
 
     def _read_back(self, body: int) -> Hull:
         model = self._model

@@ -10,7 +10,7 @@ from harness.arrays import Floats, Pairs
 from harness.backends.poses import close_pairs, near_radii, require_finite, rotations
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import has_area
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 
@@ -35,11 +35,11 @@ class Parry3d:
     def load(self, scene: Scene) -> None:
         py_parry3d.set_num_threads(1)
         self._unit, self._radii = unit_of(scene.bodies.sizes), scene.enclosing_radii
-        sizes = scene.bodies.sizes.tolist()
-        shapes = {size: _shape(scene, size, self._unit) for size in dict.fromkeys(sizes)}
-        self._names = [str(body) for body in range(len(sizes))]
+        solids = scene.solids
+        shapes = {solid: _shape(scene, solid, self._unit) for solid in dict.fromkeys(solids)}
+        self._names = [str(body) for body in range(len(solids))]
         groups = [
-            py_parry3d.CollisionGroup(name, [shapes[size]]) for name, size in zip(self._names, sizes, strict=True)
+            py_parry3d.CollisionGroup(name, [shapes[solid]]) for name, solid in zip(self._names, solids, strict=True)
         ]
         self._world = py_parry3d.CollisionWorld(groups)
 
@@ -60,10 +60,11 @@ class Parry3d:
         return near
 
 
-def _shape(scene: Scene, size: float, unit: float) -> py_parry3d.Shape:
-    if scene.shape == "sphere" or scene.mesh is None:
+def _shape(scene: Scene, shared: Solid, unit: float) -> py_parry3d.Shape:
+    mesh, size = shared
+    if scene.shape == "sphere":
         return py_parry3d.Sphere(size / unit / 2)
-    solid = scene.solid_of(size)
+    solid = scene.solid_of(size, mesh)
     vertices = solid.vertices / unit
     if scene.shape == "hull":
         return py_parry3d.ConvexHull_from_trimesh(trimesh.Trimesh(vertices, solid.faces, process=False))

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from harness.arrays import Floats, Pairs
 from harness.scene.hull import Hull
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid, by_solid
 from harness.vocabulary import Query, Shape
 
 
@@ -166,13 +166,15 @@ def contained_is_touching(backend: Backend, shape: Shape) -> bool:
     return shape in getattr(backend, "solid", ()) or shape in approximations(backend)
 
 
-def own_hulls(backend: Backend) -> Mapping[float, Hull]:
-    """The hulls that a loaded backend holds in place of the scene's, by the size of a body, both m; else empty.
+def own_hulls(backend: Backend) -> Mapping[Solid, Hull]:
+    """The hulls that a loaded backend holds in place of the scene's, in m, by what bodies share; else empty.
+
+    A backend has them as `own_hulls`, by the number of the mesh and the size (m), or by the size alone if all bodies
+    have one mesh.
 
     A comparison gives them to the other backend too, so that both are asked about the same solids.
     """
-    held: Mapping[float, Hull] = getattr(backend, "own_hulls", {})
-    return held
+    return by_solid(getattr(backend, "own_hulls", {}))
 
 
 def own_hulls_tolerance(backend: Backend) -> float:

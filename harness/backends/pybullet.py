@@ -16,7 +16,7 @@ from harness.backends.protocol import NearPairs
 from harness.errors import InputError
 from harness.narrowphase.units import SMALLEST_UNITS, unit_of_smallest
 from harness.scene.hull import Hull, convex_hull
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 # Bullet inflates every hull by this (in its own units) and offers contact points up to 0.02 apart; a margin of zero is
@@ -50,9 +50,9 @@ class PyBullet:
         return 1e-15 if shape == "sphere" else 5e-4
 
     @property
-    def own_hulls(self) -> dict[float, Hull]:
-        """The hulls after their quantisation, by the size of a body."""
-        return {size: self._read_back(body) for size, body in self._of_size.items()}
+    def own_hulls(self) -> dict[Solid, Hull]:
+        """The hulls after their quantisation, by the mesh and the size of a body."""
+        return {solid: self._read_back(body) for solid, body in self._first.items()}
 
     def load(self, scene: Scene) -> None:
         self._client = pybullet.connect(pybullet.DIRECT)
@@ -62,20 +62,20 @@ class PyBullet:
         self._latest: tuple[tuple[int, ...], ...] = ()
         self._keeps_contacts = scene.shape != "sphere"
         self._inflation = 0.0 if scene.shape == "sphere" else 2 * MARGIN
-        shapes: dict[float, int] = {}
+        shapes: dict[Solid, int] = {}
         self._numbers = {}
-        self._of_size: dict[float, int] = {}
-        sizes, places = (scene.bodies.sizes / self._unit).tolist(), (scene.bodies.positions / self._unit).tolist()
-        for i, (size, place) in enumerate(zip(sizes, places, strict=True)):
-            if size not in shapes:
-                shapes[size] = self._shape(scene, size)
+        self._first: dict[Solid, int] = {}
+        places = (scene.bodies.positions / self._unit).tolist()
+        for i, (solid, place) in enumerate(zip(scene.solids, places, strict=True)):
+            if solid not in shapes:
+                shapes[solid] = self._shape(scene, solid)
             # a mass, because two bodies without one never show a contact; in its place, because bodies that are all
             # made in one place become pairs of it, and thousands of bodies millions of pairs
             body = pybullet.createMultiBody(
-                baseMass=1.0, baseCollisionShapeIndex=shapes[size], basePosition=place, physicsClientId=self._client
+                baseMass=1.0, baseCollisionShapeIndex=shapes[solid], basePosition=place, physicsClientId=self._client
             )
             self._numbers[body] = i
-            self._of_size.setdefault(size * self._unit, body)
+            self._first.setdefault(solid, body)
         self._bodies = list(self._numbers)
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
@@ -147,15 +147,16 @@ class PyBullet:
         _, vertices = pybullet.getMeshData(body, -1, physicsClientId=self._client)
         return convex_hull(np.array(vertices) * self._unit)
 
-    def _shape(self, scene: Scene, size: float) -> int:
-        if scene.shape == "sphere" or scene.mesh is None:
+    def _shape(self, scene: Scene, solid: Solid) -> int:
+        mesh, size = solid[0], solid[1] / self._unit
+        if scene.shape == "sphere":
             return int(
                 pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=size / 2, physicsClientId=self._client)
             )
-        if scene.mesh.flat:
+        if scene.meshes[mesh].flat:
             raise InputError("it replaces each mesh by its hull, and a flat mesh has none")
         # vertices without indices make a convex hull; with indices they would make a concave mesh
-        vertices = (scene.mesh.hull.vertices * size).tolist()
+        vertices = (scene.meshes[mesh].hull.vertices * size).tolist()
         return int(pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=vertices, physicsClientId=self._client))
 
 

@@ -12,7 +12,7 @@ from harness.backends.rapier_casts import Casts, ShapeData
 from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import has_area
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 # Relative: by how much spheres are grown, so that single precision loses no pair.
@@ -42,13 +42,13 @@ class Rapier3d:
 
     def load(self, scene: Scene) -> None:
         self._scene, self._unit = scene, unit_of(scene.bodies.sizes)
-        data = {size: _shape_data(scene, size, self._unit) for size in dict.fromkeys(scene.bodies.sizes.tolist())}
-        shapes = {size: shape.make() for size, shape in data.items()}
-        self._shapes = [shapes[size] for size in scene.bodies.sizes.tolist()]
+        data = {solid: _shape_data(scene, solid, self._unit) for solid in dict.fromkeys(scene.solids)}
+        shapes = {solid: shape.make() for solid, shape in data.items()}
+        self._shapes = [shapes[solid] for solid in scene.solids]
         self._sensors = _World(self._shapes, sensor=True)
         self._solids: _World | None = None
         self._spheres, self._radii = self._sensors, np.empty(0)
-        self._casts = Casts(data, scene.bodies.sizes, self._unit)
+        self._casts = Casts(data, scene.solids, self._unit)
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         require_finite(positions, quaternions)
@@ -152,12 +152,13 @@ def _sorted(pairs: list[tuple[int, int]]) -> Pairs:
     return np.array(sorted(pairs), np.int64).reshape(-1, 2)
 
 
-def _shape_data(scene: Scene, size: float, unit: float) -> ShapeData:
-    if scene.shape == "sphere" or scene.mesh is None:
+def _shape_data(scene: Scene, solid: Solid, unit: float) -> ShapeData:
+    mesh, size = solid
+    if scene.shape == "sphere":
         return ShapeData(size / unit / 2, [], [])
-    solid = scene.solid_of(size)
-    faces = solid.faces[has_area(*solid)].tolist() if scene.shape == "mesh" else []
-    return ShapeData(0.0, (solid.vertices / unit).tolist(), faces)
+    surface = scene.solid_of(size, mesh)
+    faces = surface.faces[has_area(*surface)].tolist() if scene.shape == "mesh" else []
+    return ShapeData(0.0, (surface.vertices / unit).tolist(), faces)
 
 
 BACKEND = Rapier3d

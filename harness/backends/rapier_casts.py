@@ -16,10 +16,11 @@ from typing import NamedTuple
 import numpy as np
 import rapier3d
 
-from harness.arrays import Floats, Pairs
+from harness.arrays import Pairs
 from harness.backends.poses import Motion, rotations_at
 from harness.child_process import Channel, Child
 from harness.cpu_time import charge
+from harness.scene.scene import Solid
 
 # s a pair may take; the slowest that ended took 1 s, of 1753 faces
 LONGEST = 5.0
@@ -32,8 +33,8 @@ class Casts:
 
     Parameters
     ----------
-    shapes : by the size of a body, m, its vertices (in units) and faces; of a sphere its radius, of a hull no faces
-    sizes : (n,) float array, m
+    shapes : by what bodies share, its vertices (in units) and faces; of a sphere its radius, of a hull no faces
+    solids : what each body shares with others, of all n bodies
     unit : m
     longest : s that a pair may take
 
@@ -42,9 +43,11 @@ class Casts:
     unanswered : pairs so far whose cast did not end, or ended the child
     """
 
-    def __init__(self, shapes: dict[float, ShapeData], sizes: Floats, unit: float, longest: float = LONGEST) -> None:
+    def __init__(
+        self, shapes: dict[Solid, ShapeData], solids: list[Solid], unit: float, longest: float = LONGEST
+    ) -> None:
         self.unanswered = 0
-        self._shapes, self._sizes, self._unit, self._longest = shapes, sizes, unit, longest
+        self._shapes, self._solids, self._unit, self._longest = shapes, solids, unit, longest
         self._child: Child | None = None
 
     def __del__(self) -> None:
@@ -54,7 +57,7 @@ class Casts:
         """Which pairs begin to touch, and when, s; one that gives no answer is none."""
         if len(pairs) == 0:
             return []
-        found, waiting = [], _questions(pairs, motion, self._sizes, self._unit)
+        found, waiting = [], _questions(pairs, motion, self._solids, self._unit)
         while waiting:
             done = 0
             for answer in self._answers(waiting):
@@ -122,14 +125,14 @@ class Part(NamedTuple):
 
 
 class Question(NamedTuple):
-    """A pair, the sizes of the body at rest and of the moving one, and the parts of the motion."""
+    """A pair, the solids of the body at rest and of the moving one, and the parts of the motion."""
 
     pair: tuple[int, int]
-    sizes: tuple[float, float]
+    solids: tuple[Solid, Solid]
     parts: list[Part]
 
 
-def _questions(pairs: Pairs, motion: Motion, sizes: Floats, unit: float) -> list[Question]:
+def _questions(pairs: Pairs, motion: Motion, solids: list[Solid], unit: float) -> list[Question]:
     """One a pair; the body that spins less is the one at rest."""
     spins = np.linalg.norm(motion.spins, axis=1)
     slower_first = spins[pairs[:, 0]] <= spins[pairs[:, 1]]
@@ -155,20 +158,20 @@ def _questions(pairs: Pairs, motion: Motion, sizes: Floats, unit: float) -> list
             strict=True,
         )
     ]
-    two_sizes = zip(sizes[rest].tolist(), sizes[moving].tolist(), strict=True)
+    two_solids = [(solids[i], solids[j]) for i, j in zip(rest.tolist(), moving.tolist(), strict=True)]
     spans = zip((ends - counts).tolist(), ends.tolist(), strict=True)
-    told = zip(pairs.tolist(), two_sizes, spans, strict=True)
+    told = zip(pairs.tolist(), two_solids, spans, strict=True)
     return [Question((i, j), of, parts[first:end]) for (i, j), of, (first, end) in told]
 
 
-def _answer_all(channel: Channel, shapes: dict[float, ShapeData]) -> None:
+def _answer_all(channel: Channel, shapes: dict[Solid, ShapeData]) -> None:
     """What the child does: answers each list of questions by as many messages, until nobody asks any more."""
-    made = {size: shape.make() for size, shape in shapes.items()}
-    worlds = {size: _world(shape) for size, shape in made.items()}
+    made = {solid: shape.make() for solid, shape in shapes.items()}
+    worlds = {solid: _world(shape) for solid, shape in made.items()}
     while (message := channel.receive()) is not None:
         for question in pickle.loads(message):
             began = process_time()
-            answer = _cast(worlds[question.sizes[0]], made[question.sizes[1]], question.parts)
+            answer = _cast(worlds[question.solids[0]], made[question.solids[1]], question.parts)
             channel.send(pickle.dumps((answer, process_time() - began)))
 
 

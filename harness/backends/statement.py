@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import os
 import sys
 from collections.abc import Mapping
@@ -20,7 +19,7 @@ from functools import lru_cache
 
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, queries, units
-from harness.child_process import Channel, Child
+from harness.child_process import Channel, Child, guarded
 from harness.kept_files import keep, kept
 from harness.kernel_cache import PACKAGE
 from harness.process_limits import isolate
@@ -156,21 +155,11 @@ def _say(name: str) -> Statement:
 
 def _say_elsewhere(name: str, seconds: float) -> Statement:
     with Child.spawn("harness.backends.statement", [name], os.environ) as child:
-        return _answer(child, seconds)
-
-
-def _say_and_leave_nothing(name: str) -> Statement:
-    """In a process forked from this one, which adopts what that one leaves behind and ends it."""
-    with Child.fork(lambda channel: channel.send(_written(_say(name)))) as child:
-        return _answer(child, math.inf)
-
-
-def _answer(child: Child, seconds: float) -> Statement:
-    answer = child.receive(seconds)
-    if answer == "timeout":
-        return Statement(f"importing it did not end within {seconds:g} s")
-    if not isinstance(answer, bytes):
-        return Statement(f"importing it ended its process with {child.end()}")
+        answer = child.receive(seconds)
+        if answer == "timeout":
+            return Statement(f"importing it did not end within {seconds:g} s")
+        if not isinstance(answer, bytes):
+            return Statement(f"importing it ended its process with {child.end()}")
     return _read(answer) or Statement("what it says of itself is garbage")
 
 
@@ -194,5 +183,4 @@ def _one_line(text: str) -> str:
 
 if __name__ == "__main__":
     isolate()
-    Channel(int(sys.argv[1])).send(_written(_say_and_leave_nothing(sys.argv[2])))
-    os._exit(0)
+    guarded(lambda channel: channel.send(_written(_say(sys.argv[2]))))(Channel(int(sys.argv[1])))

@@ -15,7 +15,7 @@ from harness.backends.poses import close_pairs, near_pairs, near_radii, require_
 from harness.backends.protocol import NearPairs
 from harness.errors import InputError
 from harness.scene.mesh import has_area
-from harness.scene.scene import Scene
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import Query, Shape
 
 
@@ -48,16 +48,16 @@ class Trimesh:
         self._radii = scene.enclosing_radii
         self._manager = CollisionManager()
         self._single: list[CollisionManager] = []
-        solids: dict[float, trimesh.Trimesh] = {}
-        for body, size in enumerate(scene.bodies.sizes.tolist()):
-            if size not in solids:
-                surface = scene.solid_of(size)
+        solids: dict[Solid, trimesh.Trimesh] = {}
+        for body, solid in enumerate(scene.solids):
+            if solid not in solids:
+                surface = scene.solid_of_body(body)
                 faces = surface.faces[has_area(*surface)] if scene.shape == "mesh" else surface.faces
-                solids[size] = trimesh.Trimesh(surface.vertices / self._unit, faces, process=False)
-                if scene.shape == "hull" and not solids[size].is_convex:
+                solids[solid] = trimesh.Trimesh(surface.vertices / self._unit, faces, process=False)
+                if scene.shape == "hull" and not solids[solid].is_convex:
                     raise InputError("it does not take this hull for convex, and would hold its surface only")
-            self._manager.add_object(body, solids[size])
-        self._solids = [solids[size] for size in scene.bodies.sizes.tolist()]
+            self._manager.add_object(body, solids[solid])
+        self._solids = [solids[solid] for solid in scene.solids]
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         for body, pose in enumerate(self._poses(positions, quaternions)):

@@ -18,13 +18,11 @@ from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from harness.compare.atlas import Cell
     from harness.compare.document import Known, Reduced
     from harness.compare.outcome import Case, Comparison, Failure
     from harness.compare.tally import Counts
-    from harness.scene.mesh import Mesh
+    from harness.scene.scene_files import Opened
 
 DATABASE = "results/results.db"
 
@@ -183,7 +181,7 @@ def _keep(found: list[tuple[str, tuple[str, str], str, dict[str, Any]]], chosen:
         print(f"the verdicts are not kept: {error}", file=sys.stderr)
 
 
-def _saved(rows: list[Reduced], meshes: dict[Path, Mesh], folder: str) -> dict[int, str]:
+def _saved(rows: list[Reduced], meshes: Opened, folder: str) -> dict[int, str]:
     """The files of the cases that were made smaller, by the place of the case."""
     from pathlib import Path
 
@@ -193,8 +191,8 @@ def _saved(rows: list[Reduced], meshes: dict[Path, Mesh], folder: str) -> dict[i
     files: dict[int, str] = {}
     for place, row in enumerate(rows):
         if row.small is not None:
-            mesh = next((path for path, opened in meshes.items() if opened is row.case.scene.mesh), None)
-            path = save(row.small, Path(folder), f"{row.name}-{place}", mesh, script_of(row.small))
+            paths = [next(path for path, opened in meshes.items() if opened is mesh) for mesh in row.small.scene.meshes]
+            path = save(row.small, Path(folder), f"{row.name}-{place}", paths, script_of(row.small))
             files[place] = str(path)
     return files
 

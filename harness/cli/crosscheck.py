@@ -12,8 +12,8 @@ import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
-from pathlib import Path
+from itertools import combinations, pairwise
+from statistics import fmean
 from typing import Any
 
 from harness.backends.registry import packages
@@ -32,10 +32,11 @@ from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
 from harness.runner.scene_of_point import SceneSizeError, build_scene
-from harness.runner.servers import mesh_of
+from harness.runner.servers import files_of
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.scene.scene_files import Opened
 from harness.vocabulary import MethodName, Query, algorithms_of
 
 DEFAULT: Mapping[Query, tuple[str, str]] = {
@@ -49,7 +50,7 @@ DEFAULT: Mapping[Query, tuple[str, str]] = {
 Asked = dict[Query, tuple[str, ...]]
 """By query, the methods that are asked it."""
 
-Meshes = Mapping[Path, Mesh]
+Meshes = Opened
 
 
 @dataclass(frozen=True)
@@ -187,8 +188,7 @@ def cross_check(
 
 def reductions(found: Comparison, meshes: Meshes, most: int, known: Known | None = None) -> list[Reduced]:
     """The cases of a comparison, the first `most` of every backend made smaller, if that is not `known` already."""
-    names = {id(mesh): path.name for path, mesh in meshes.items()}
-    return reduced(found, names, most, known)
+    return reduced(found, {id(mesh): path.name for path, mesh in meshes.items()}, most, known)
 
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:
@@ -205,7 +205,7 @@ def key_of(
     experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent, budget: Budget | None = None
 ) -> str:
     """Of two comparisons with the same key the second would find nothing new."""
-    points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
+    points = sorted({point_key(point, files_of(experiment, point, meshes)) for point in experiment.points})
     limits = [budget.seconds, budget.every] if budget and (budget.seconds or budget.every > 1) else []
     content = json.dumps([points, pair, repr(extent), package_versions(packages()), *limits])
     return hashlib.sha256(content.encode()).hexdigest()
@@ -227,11 +227,23 @@ def _pose_sets(experiment: Experiment, meshes: Meshes, extent: Extent, query: Qu
     for point, scene, frames in _motions(experiment, meshes, extent, points, by_question=query != "collision"):
         yield flown(scene, frames, point.motion.dt, _question(point))
     random = {
-        (point.scene.shape, point.scene.mesh, _question(point)): point for point in points if point.scene.bodies is None
+        (point.scene.shape, point.scene.mesh_names, _question(point)): point
+        for point in points
+        if point.scene.bodies is None
     }
     for (shape, _, question), point in random.items():
-        mesh = mesh_of(experiment, point, meshes)
-        yield from hard_questions(shape, mesh, extent.every, question, size=point.scene.size.mean)
+        size = point.scene.size
+        for pair in _both(files_of(experiment, point, meshes).meshes):
+            mean = fmean(mesh.diameter for mesh in pair) if size.is_native else size.mean
+            yield from hard_questions(shape, pair, extent.every, question, size=mean)
+
+
+def _both(meshes: tuple[Mesh, ...]) -> Iterator[tuple[Mesh, ...]]:
+    """The meshes of two bodies: of each mesh with itself, and with the next one, so that every kind has its turn."""
+    if not meshes:
+        yield ()
+    yield from ((mesh,) for mesh in meshes)
+    yield from pairwise(meshes)
 
 
 def _question(point: Point) -> Question:
@@ -271,7 +283,7 @@ def _motions(
 def _scene(experiment: Experiment, point: Point, meshes: Meshes) -> Scene | None:
     """The scene of a point; None where there is no pair."""
     try:
-        scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
+        scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)
     except (PlacementError, SceneSizeError) as error:
         raise InputError(f"{experiment.path}: {error}") from error
     return scene if len(scene.bodies) > 1 else None

@@ -6,7 +6,6 @@ import json
 import signal
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import yaml
@@ -20,10 +19,10 @@ from harness.experiment.load import load_text
 from harness.replay.document import document
 from harness.replay.live import LiveServer
 from harness.replay.page import Setting, live_page
-from harness.runner.scene_of_point import derived_parameters
-from harness.runner.servers import Servers, mesh_of, task_of
+from harness.runner.scene_of_point import derived_parameters, mean_size
+from harness.runner.servers import Servers, files_of, task_of
 from harness.runner.task import Report
-from harness.scene.mesh import Mesh
+from harness.scene.scene_files import Opened, SceneFiles
 from harness.vocabulary import ALGORITHMS
 
 # Larger scenes are counted and timed, but not shown: a browser could not draw them smoothly.
@@ -34,7 +33,7 @@ COLUMNS = (
     *("CPU time, ms", "simulated s per s"),
 )
 
-Meshes = Mapping[Path, Mesh]
+Meshes = Opened
 
 
 def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -> int:
@@ -65,8 +64,9 @@ def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
     """The settings of the page, with the values of the first point."""
     point = experiment.points[0]
     leaves = point.parameters
-    ratio = leaves["box_ratio"] or _mean_size(point) ** 2 / derived_parameters(point, None)["box_side"] ** 2
-    shapes = ("sphere",) if point.scene.mesh is None else ("sphere", "hull", "mesh")
+    files = files_of(experiment, point, meshes)
+    ratio = leaves["box_ratio"] or mean_size(point, files) ** 2 / derived_parameters(point, files)["box_side"] ** 2
+    shapes = ("sphere",) if not point.scene.mesh_names else ("sphere", "hull", "mesh")
     found = [
         Setting("algorithm", "algorithm", leaves["algorithm"], tuple(ALGORITHMS)),
         Setting("backend", "backend", leaves["backend"], tuple(registry.names())),
@@ -77,12 +77,6 @@ def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
         found.insert(3, Setting("count", "number of bodies", str(leaves["count"]), inputmode="numeric"))
         found.append(Setting("speed", "speed, m/s", json.dumps(leaves["speed"]).replace('"', ""), inputmode="text"))
     return found
-
-
-def _mean_size(point: Point) -> float:
-    if point.scene.bodies is None:
-        return float(point.scene.size.mean)
-    return sum(body.size for body in point.scene.bodies) / len(point.scene.bodies)
 
 
 def _answer(
@@ -98,7 +92,7 @@ def _answer(
     report = servers.run(*task_of(now, point, meshes))
     if report.status != "ok":
         return {"error": _sentence(f"the run did not come to its end ({report.status}): {report.reason}")}
-    answer: dict[str, Any] = {"said": _summary(report), "row": _row(point, mesh_of(now, point, meshes), report)}
+    answer: dict[str, Any] = {"said": _summary(report), "row": _row(point, files_of(now, point, meshes), report)}
     bodies = point.scene.count if point.scene.bodies is None else len(point.scene.bodies)
     if (bodies or 0) > MOST_BODIES or report.metrics["events"] > MOST_HITS:
         answer["said"] += f" Too much to show: at most {MOST_BODIES} bodies and {MOST_HITS} hits are."
@@ -138,10 +132,10 @@ def _summary(report: Report) -> str:
     return " ".join([*sentences, *(_sentence(warning) for warning in warnings)])
 
 
-def _row(point: Point, mesh: Mesh | None, report: Report) -> list[str]:
-    leaves, found = {**point.parameters, **derived_parameters(point, mesh)}, report.metrics
+def _row(point: Point, files: SceneFiles, report: Report) -> list[str]:
+    leaves, found = {**point.parameters, **derived_parameters(point, files)}, report.metrics
     count = leaves["count"] if leaves["bodies"] is None else len(leaves["bodies"])
-    ratio = leaves["box_ratio"] or _mean_size(point) ** 2 / leaves["box_side"] ** 2
+    ratio = leaves["box_ratio"] or mean_size(point, files) ** 2 / leaves["box_side"] ** 2
     return [
         leaves["algorithm"],
         leaves["backend"],

@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.runner.execute import plan_of
     from harness.runner.preparation import prepare
     from harness.runner.scene_of_point import SceneSizeError, build_scene
-    from harness.runner.servers import mesh_of
+    from harness.runner.servers import files_of
     from harness.scene.launch import PlacementError
 
     experiments, meshes = prepare([arguments.path], overrides_of(arguments))
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     plans = []
     for point in experiment.points:
         try:
-            scene = build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory)
+            scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)
         except (SceneSizeError, PlacementError) as error:
             leaf = "count" if point.scene.bodies is None else "bodies"
             raise InputError([experiment.leaf_problem(leaf, point.parameters[leaf], str(error))]) from error

@@ -26,7 +26,7 @@ from harness.compare.script import script_of
 from harness.experiment.experiment import Experiment
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
-from harness.runner.servers import mesh_of
+from harness.runner.servers import files_of
 from harness.vocabulary import OWN_BACKEND
 
 # s for the atlas of an experiment within a sweep; `harness compare` takes as long as it takes.
@@ -100,17 +100,14 @@ def surveyed(
 ) -> Surveyed:
     """Ask every engine about every family, shape and mesh of an experiment; then make its cases smaller."""
     atlas = Atlas()
-    wanted = {(point.scene.shape, point.scene.mesh): point for point in experiment.points}
+    wanted = {(point.scene.shape, point.scene.mesh_names): point for point in experiment.points}
     for (shape, _), point in wanted.items():
-        mesh = mesh_of(experiment, point, meshes)
         measure = experiment.measure
         for query in measure.family_queries:
             asked = names if query == "collision" else (*names, OWN)
-            atlas.add(
-                survey(
-                    shape, mesh, measure.families, measure.family_poses, asked, budget, progress, made=SURVEYS[query]
-                )
-            )
+            how = measure.families, measure.family_poses, asked, budget, progress
+            for mesh in files_of(experiment, point, meshes).meshes or (None,):
+                atlas.add(survey(shape, mesh, *how, made=SURVEYS[query]))
     found = Comparison(
         cases=list(atlas.cases.values()),
         failures=atlas.failures,
@@ -130,7 +127,7 @@ def surveyed(
 
 def survey_key(experiment: Experiment, meshes: Meshes, name: str) -> str:
     """Of two surveys of an engine with the same key the second would find nothing new."""
-    points = sorted({point_key(point, mesh_of(experiment, point, meshes)) for point in experiment.points})
+    points = sorted({point_key(point, files_of(experiment, point, meshes)) for point in experiment.points})
     measure = experiment.measure
     asked = [measure.families, measure.family_queries, measure.family_poses]
     content = json.dumps([points, name, *asked, package_versions(packages())])

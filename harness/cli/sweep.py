@@ -6,7 +6,7 @@ Exit code 1 if a run failed or an expectation does not hold, 2 if an experiment 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
@@ -14,13 +14,11 @@ from harness.cli.width import say
 from harness.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from harness.experiment.experiment import Experiment
     from harness.runner.executor import Executor
     from harness.runner.schedule import RunSelection
     from harness.runner.sweep import Summary
-    from harness.scene.mesh import Mesh
+    from harness.scene.scene_files import Opened
     from harness.store.database import Database
 
 DATABASE = "results/results.db"
@@ -142,7 +140,7 @@ _COMPARING = 30.0
 
 def _compare(
     experiments: Sequence[Experiment],
-    meshes: Mapping[Path, Mesh],
+    meshes: Opened,
     database: Database,
     command: str,
     arguments: argparse.Namespace,
@@ -205,7 +203,7 @@ def _compare(
 
 def _survey(
     experiments: Sequence[Experiment],
-    meshes: Mapping[Path, Mesh],
+    meshes: Opened,
     database: Database,
     command: str,
     arguments: argparse.Namespace,
@@ -257,7 +255,7 @@ def _address(text: str) -> str:
 
 def _print_what_would_be_done(
     experiments: Sequence[Experiment],
-    meshes: Mapping[Path, Mesh],
+    meshes: Opened,
     arguments: argparse.Namespace,
     command: str,
     selection: RunSelection,

@@ -165,7 +165,7 @@ class Survey:
 
     def ask(self, count: int) -> None:
         """Every engine about every pose."""
-        for pose_set in family_poses(self.family, self.shape, self.mesh, count):
+        for pose_set in family_poses(self.family, self.shape, (self.mesh,) if self.mesh else (), count):
             with ExitStack() as processes:
                 asked = self._loaded(pose_set.scene, processes)
                 # an engine that rounds its hulls is asked about poses of those, and judged by them

@@ -57,7 +57,7 @@ def _cut(scene: Scene, body: int, place: Floats, quaternion: Floats, across: Flo
         angles = np.linspace(0, 2 * np.pi, _CORNERS + 1)
         corners = centre + size / 2 * np.column_stack([np.cos(angles), np.sin(angles)])
         return _rounded(np.hstack([corners[:-1], corners[1:]]), size)
-    solid = scene.solid_of(size)
+    solid = scene.solid_of_body(body)
     vertices = turned(solid.vertices, quaternion) + place
     triangles = vertices[solid.faces]
     heights = triangles @ np.cross(across, up)

@@ -25,19 +25,19 @@ class Reduced:
     Parameters
     ----------
     small : the smallest scene that shows it; None where it depends on what was asked before
-    mesh : name of the mesh's file
+    meshes : names of the files of the meshes
     tried : whether it was tried to make it smaller
     """
 
     case: Case
     small: Case | None
-    mesh: str | None
+    meshes: tuple[str, ...]
     tried: bool = True
 
     @property
     def text(self) -> str | None:
         """The experiment that shows it by itself."""
-        return None if self.small is None else text_of(self.small, self.mesh)
+        return None if self.small is None else text_of(self.small, self.meshes)
 
     @property
     def name(self) -> str:
@@ -68,7 +68,8 @@ def reduced(found: Comparison, mesh_name: dict[int, str], most: int, known: Know
             small = minimise(case, known.get(place))
             if small is not None:
                 known.setdefault(place, small)
-        rows.append(Reduced(case, small, mesh_name.get(id(case.scene.mesh)), now))
+        names = tuple(mesh_name.get(id(mesh), mesh.name) for mesh in case.scene.meshes)
+        rows.append(Reduced(case, small, names, now))
     return rows
 
 
@@ -154,7 +155,7 @@ def shown_case(row: Reduced) -> dict[str, Any]:
         "section": cross_section(best),
         "minimised": small,
         "text": row.text,
-        "mesh": row.mesh,
+        "mesh": ", ".join(row.meshes) or None,
     }
 
 

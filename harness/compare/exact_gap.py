@@ -98,5 +98,5 @@ class ExactGap:
         }
 
     def _placed(self, body: int) -> tuple[Surface, Placed]:
-        solid = self._scene.solid_of(float(self._scene.bodies.sizes[body]))
+        solid = self._scene.solid_of_body(body)
         return solid, Placed(solid.vertices, self._pose.positions[body], self._pose.quaternions[body])

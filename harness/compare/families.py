@@ -36,12 +36,12 @@ Draw = Callable[[Scene, float, np.random.Generator], Pose]
 """A pose of a scene of two bodies, so far (m) from the origin."""
 
 
-def family_poses(family: str, shape: Shape, mesh: Mesh | None, count: int) -> Iterator[PoseSet]:
+def family_poses(family: str, shape: Shape, meshes: tuple[Mesh, ...], count: int) -> Iterator[PoseSet]:
     """The poses of a family, as many as said, shared among the sizes and places that it has."""
     variants, draw = _FAMILIES[family]
     for number, (sizes, away) in enumerate(variants):
         some = count // len(variants) + (number < count % len(variants))
-        scene = two_bodies(shape, mesh, sizes, away)
+        scene = two_bodies(shape, meshes, sizes, away)
         yield PoseSet(scene, partial(_drawn, draw=draw, away=away, seed=(_SEED, number), count=some), hard=True)
 
 
@@ -79,9 +79,8 @@ def _grazing(scene: Scene, away: float, rng: np.random.Generator) -> Pose:
 
 def _aligned(scene: Scene, away: float, rng: np.random.Generator) -> Pose:
     """The second body lies along a direction of the first, turned as it is or with the same feature against it."""
-    sizes = scene.bodies.sizes.tolist()
     feature = str(rng.choice(FEATURES))
-    first, second = (_direction_of(solid_of(scene, size), feature, rng) for size in sizes)
+    first, second = (_direction_of(solid_of(scene, body), feature, rng) for body in (0, 1))
     turned = _UPRIGHT if rng.random() < 0.5 else random_turn(rng)
     along = rotated(turned, first)
     against = turned if rng.random() < 0.5 else turn_onto(second, -along, 0.0)
@@ -109,7 +108,7 @@ def _direction_of(solid: Surface | None, feature: str, rng: np.random.Generator)
 def _shared(scene: Scene, away: float, rng: np.random.Generator) -> Pose:
     """Both turned alike, so that a feature of one lies in one of the other without any rounding of a turn."""
     sizes = scene.bodies.sizes.tolist()
-    solids = [solid_of(scene, size) for size in sizes]
+    solids = [solid_of(scene, body) for body in (0, 1)]
     kind = str(rng.choice(["all", "vertex", "edge", "plane"]))
     turned = _UPRIGHT if rng.random() < 0.7 else random_turn(rng)
     if solids[0] is None or solids[1] is None:
@@ -137,7 +136,7 @@ def _either(scene: Scene, away: float, rng: np.random.Generator) -> Pose:
 def _reach(scene: Scene, body: int, turned: Floats, along: Floats) -> float:
     """m, how far a body extends along a direction."""
     size = float(scene.bodies.sizes[body])
-    solid = solid_of(scene, size)
+    solid = solid_of(scene, body)
     if solid is None:
         return size / 2
     return float((solid.vertices @ rotated(turned * [1, -1, -1, -1], along)).max())

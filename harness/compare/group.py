@@ -104,8 +104,8 @@ def unacceptable(facts: Facts, scene: Scene) -> str | None:
     for tolerance, what in ((facts.tolerance, "tolerance"), (facts.hulls_tolerance, "tolerance for its own hulls")):
         if not 0.0 <= tolerance <= LARGEST_TOLERANCE:
             return f"it declares a {what} of {tolerance:g} of a size; at most {LARGEST_TOLERANCE:g} is accepted"
-    for size, hull in facts.hulls.items():
-        solid = scene.solid_of(size)
+    for (mesh, size), hull in facts.hulls.items():
+        solid = scene.solid_of(size, mesh)
         off = _apart(hull, solid.vertices, solid.faces) / size
         if not off <= facts.tolerance:
             return (

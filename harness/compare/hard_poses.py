@@ -38,18 +38,18 @@ _STEPS = (4e-7, -4e-7, 3e-8, -3e-8, 2e-9, -2e-9)
 _SEED = 259
 
 
-def hard_poses(shape: Shape, mesh: Mesh | None, every: int = 1) -> Iterator[PoseSet]:
+def hard_poses(shape: Shape, meshes: tuple[Mesh, ...], every: int = 1) -> Iterator[PoseSet]:
     """Pairs at first contact, deep inside each other, contained and concentric, of many sizes and far away.
 
     Parameters
     ----------
     shape : what the narrow phase is to see
-    mesh : None for spheres
+    meshes : of the first body and of the second, or of both
     every : of the first contacts, take every n-th
     """
     for number, (size, other, away) in enumerate(_SIZES_AND_DISTANCES):
         some = every if number == 0 or shape == "sphere" else max(every, _THINNED)
-        yield PoseSet(two_bodies(shape, mesh, (size, other), away), partial(_poses, away=away, every=some), hard=True)
+        yield PoseSet(two_bodies(shape, meshes, (size, other), away), partial(_poses, away=away, every=some), hard=True)
 
 
 def _poses(scene: Scene, away: float, every: int) -> tuple[Pose, ...]:

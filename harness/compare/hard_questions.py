@@ -22,16 +22,18 @@ _SEED = 259
 _WAY, _TURN = 0.2, 0.3
 
 
-def hard_questions(shape: Shape, mesh: Mesh | None, every: int, question: Question, size: float) -> Iterator[PoseSet]:
+def hard_questions(
+    shape: Shape, meshes: tuple[Mesh, ...], every: int, question: Question, size: float
+) -> Iterator[PoseSet]:
     """The hard poses of a shape, asked a question.
 
     Parameters
     ----------
-    shape, mesh, every : as for `harness.compare.hard_poses.hard_poses`
+    shape, meshes, every : as for `harness.compare.hard_poses.hard_poses`
     question : about bodies of a mean size; of larger ones what is near is as much larger
     size : m, the mean
     """
-    for pose_set in hard_poses(shape, mesh, every):
+    for pose_set in hard_poses(shape, meshes, every):
         scaled = question.scaled(float(pose_set.scene.bodies.sizes.mean()) / size)
         poses = partial(_passing, pose_set.poses) if question.query == "impact" else pose_set.poses
         yield replace(pose_set, question=scaled, poses=poses)

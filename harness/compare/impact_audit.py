@@ -63,8 +63,7 @@ class ImpactAudit:
         self.found = Comparison(tallies=[self._tally], checked=[self._checked])
 
     def add(self, truths: Truths, query_index: int, answers: tuple[Told, Told]) -> None:
-        count = len(self._scene.bodies)
-        pairs = count * (count - 1) // 2
+        pairs = self._scene.pair_count
         told = {pair: _both(answers, pair) for pair in sorted(set(answers[0]) | set(answers[1]))}
         differing = [pair for pair, times in told.items() if self._differ(truths.pose, pair, times)]
         self._tally.poses += 1

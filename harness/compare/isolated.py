@@ -25,7 +25,7 @@ from harness.backends.protocol import (
     own_hulls_tolerance,
     queries,
 )
-from harness.child_process import Channel, Child
+from harness.child_process import Channel, Child, guarded
 from harness.compare.own_gaps import OWN, OwnGaps
 from harness.compare.poses import Frame, Pose
 from harness.compare.query_answers import QueryAnswers, Told
@@ -33,7 +33,8 @@ from harness.compare.question import COLLISION, Question
 from harness.errors import InputError
 from harness.methods.at_poses import AtPoses
 from harness.scene.hull import Hull
-from harness.scene.scene import Scene
+from harness.scene.ignored_pairs import without
+from harness.scene.scene import Scene, Solid
 from harness.vocabulary import MethodName, Query, Shape
 
 ANSWER_SECONDS = 10.0
@@ -50,7 +51,7 @@ class Facts:
     ----------
     tolerance : of size; nearer contacts are not to be trusted
     approximated : by what it replaces the shape, if it does
-    hulls : those it holds in place of the scene's, by the size of a body
+    hulls : those it holds in place of the scene's, by what bodies share
     hulls_tolerance : of size, where those are taken as the truth
     solid : it says that of two bodies one inside the other touches, though the shape is a surface
     queries : what it can be asked
@@ -58,7 +59,7 @@ class Facts:
 
     tolerance: float
     approximated: str | None = None
-    hulls: Mapping[float, Hull] = field(default_factory=dict)
+    hulls: Mapping[Solid, Hull] = field(default_factory=dict)
     hulls_tolerance: float = 0.0
     solid: bool = False
     queries: tuple[Query, ...] = ("collision",)
@@ -147,7 +148,7 @@ class Isolated:
     def pairs(self, pose: Pose) -> Pairs | str:
         """The touching pairs at a pose, or how the backend failed at it; after a failure it is started afresh."""
         found: Pairs | str = self._answer((pose.positions, pose.quaternions))
-        return found
+        return found if isinstance(found, str) else without(found, self._scene.ignored)
 
     def told(self, pose: Pose) -> Told | str:
         """What it tells of each pair at a pose, or in a frame, or how it failed there, as `pairs`.
@@ -194,7 +195,7 @@ class Isolated:
         return None
 
     def _start(self) -> Facts:
-        self._child = Child.fork(partial(_serve, self.name, self._scene, self.question))
+        self._child = Child.fork(guarded(partial(_serve, self.name, self._scene, self.question)))
         try:
             answer = self._child.receive(_LOADING * self._timeout)
             if answer == "timeout":

@@ -38,9 +38,9 @@ def judge(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) 
     quaternions : (n, 4) float array, w x y z
     """
     sizes = scene.bodies.sizes
-    if scene.shape == "sphere" or scene.mesh is None:
+    if scene.shape == "sphere":
         return _spheres(positions[i].tolist(), positions[j].tolist(), float(sizes[i]), float(sizes[j]))
-    first, second = (scene.solid_of(float(sizes[body])) for body in (i, j))
+    first, second = (scene.solid_of_body(body) for body in (i, j))
     if scene.shape == "mesh":
         return judge_surfaces(first, positions[i], quaternions[i], second, positions[j], quaternions[j])
     placed = Placed(first.vertices, positions[i], quaternions[i])
@@ -52,8 +52,7 @@ def touches(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats
     """Whether bodies i and j touch, as `judge` decides, without gap and proof: of hulls a few times quicker."""
     if scene.shape != "hull":
         return judge(scene, i, j, positions, quaternions).touching
-    sizes = scene.bodies.sizes
-    first, second = (scene.solid_of(float(sizes[body])).vertices for body in (i, j))
+    first, second = (scene.solid_of_body(body).vertices for body in (i, j))
     one, other, _ = world_points(
         Placed(first, positions[i], quaternions[i]), Placed(second, positions[j], quaternions[j])
     )

@@ -190,7 +190,10 @@ def _alone(scene: Scene, pose: Pose, chosen: list[int]) -> Scene:
     alone = Bodies(
         pose.positions[chosen], velocities, pose.quaternions[chosen], spins, bodies.sizes[chosen], bodies.masses[chosen]
     )
-    return replace(scene, bodies=alone, hulls={})
+    places = {body: place for place, body in enumerate(chosen)}
+    ignored = [(places[i], places[j]) for i, j in scene.ignored.tolist() if i in places and j in places]
+    pairs = np.array(ignored, np.int64).reshape(-1, 2)
+    return replace(scene, bodies=alone, hulls={}, mesh_of=scene.mesh_of[chosen], ignored=pairs)
 
 
 def _pose_of(case: Case, scene: Scene) -> Pose:

@@ -28,9 +28,8 @@ class OwnGaps:
 
     def load(self, scene: Scene) -> None:
         self._scene = scene
-        self._shape: MeshGapShape | None = None
-        if scene.shape != "sphere" and scene.mesh is not None:
-            self._shape = mesh_gap_shape(scene.mesh)
+        made = [mesh_gap_shape(mesh) for mesh in scene.meshes] if scene.shape != "sphere" else []
+        self._shapes: list[MeshGapShape] = [made[number] for number in scene.mesh_of.tolist()] if made else []
 
     def pairs(self, positions: Floats, quaternions: Floats) -> Pairs:
         return self.distances(positions, quaternions, 0.0).pairs
@@ -39,12 +38,12 @@ class OwnGaps:
         sizes = self._scene.bodies.sizes.tolist()
         one, other = (Poses(positions[k : k + 1], quaternions[k : k + 1], sizes[k]) for k in (0, 1))
         found = Gaps(np.empty(1), np.empty((1, 2, 3)))
-        if self._shape is None:
+        if not self._shapes:
             sphere_gaps(one, other, EXACT, found)
         elif self._scene.shape == "hull":
-            hull_gaps(self._shape.mesh.hull, self._shape.mesh.hull, one, other, EXACT, found)
+            hull_gaps(self._shapes[0].mesh.hull, self._shapes[1].mesh.hull, one, other, EXACT, found)
         else:
-            mesh_gaps(self._shape, self._shape, one, other, EXACT, found)
+            mesh_gaps(self._shapes[0], self._shapes[1], one, other, EXACT, found)
         near = found.gaps <= within
         pairs = np.array([[0, 1]], np.int64)[near]
         return NearPairs(pairs, found.gaps[near], found.points[near])

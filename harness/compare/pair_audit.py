@@ -21,6 +21,7 @@ from harness.compare.query_answers import Told
 from harness.compare.question import COLLISION, Question
 from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally
 from harness.compare.truths import Pair, Truths
+from harness.scene.ignored_pairs import without
 from harness.scene.scene import Scene
 
 Kind = Literal["undecided", "containment", "approximation", "real"]
@@ -71,8 +72,7 @@ class PairAudit:
 
     def add(self, truths_there: Truths, query_index: int, answers: tuple[Told, Told]) -> None:
         """Count the verdicts of both at a pose; documented as `harness.compare.audit.Audit.add`."""
-        count = len(self._scene.bodies)
-        pairs = count * (count - 1) // 2
+        pairs = self._scene.pair_count
         first, second = (set(answer) for answer in answers)
         differing = sorted(first ^ second)
         self._tally.poses += 1
@@ -157,7 +157,7 @@ def _near_pair(scene: Scene, pose: Pose, query_index: int, within: float) -> Pai
     radii = scene.bodies.radii + 0.5 * within
     pairs = cKDTree(pose.positions).query_pairs(2 * float(radii.max()), output_type="ndarray")
     apart = np.linalg.norm(pose.positions[pairs[:, 0]] - pose.positions[pairs[:, 1]], axis=1)
-    near = pairs[apart <= radii[pairs].sum(axis=1)]
+    near = without(np.sort(pairs[apart <= radii[pairs].sum(axis=1)], axis=1), scene.ignored)
     if not len(near):
         return None
     ordered = near[np.lexsort((near[:, 1], near[:, 0]))]

@@ -37,9 +37,7 @@ def at_contact(
 ) -> Iterator[Pose]:
     """Two bodies by a feature of each, at one gap (of the smaller size) after another along the same normal."""
     sizes = scene.bodies.sizes.tolist()
-    contact, other = (
-        contact_of(solid_of(scene, size), size, name, rng) for size, name in zip(sizes, features, strict=True)
-    )
+    contact, other = (contact_of(solid_of(scene, body), sizes[body], name, rng) for body, name in enumerate(features))
     turned = random_turn(rng)
     normal = rotated(turned, contact.outward)
     against = turn_onto(other.outward, -normal, rng.uniform(0, 2 * np.pi))
@@ -50,7 +48,7 @@ def at_contact(
         yield Pose(name, np.array([centre, place]), np.array([turned, against]))
 
 
-def two_bodies(shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], away: float) -> Scene:
+def two_bodies(shape: Shape, meshes: tuple[Mesh, ...], sizes: tuple[float, float], away: float) -> Scene:
     bodies = Bodies(
         positions=np.zeros((2, 3)),
         velocities=np.zeros((2, 3)),
@@ -59,12 +57,18 @@ def two_bodies(shape: Shape, mesh: Mesh | None, sizes: tuple[float, float], away
         sizes=np.array(sizes),
         masses=np.array(sizes) ** 3,
     )
-    return Scene(shape, mesh, bodies, Box(np.full(3, away + 4 * sum(sizes))))
+    return Scene(
+        shape,
+        meshes,
+        bodies,
+        Box(np.full(3, away + 4 * sum(sizes))),
+        mesh_of=np.array([0, max(0, len(meshes) - 1)]),
+    )
 
 
-def solid_of(scene: Scene, size: float) -> Surface | None:
-    """The hull of a body of this size, m; of a mesh too, since its hull is met first. None for a sphere."""
-    return None if scene.shape == "sphere" else replace(scene, shape="hull").solid_of(size)
+def solid_of(scene: Scene, body: int) -> Surface | None:
+    """The hull of a body, m; of a mesh too, since its hull is met first. None for a sphere."""
+    return None if scene.shape == "sphere" else replace(scene, shape="hull").solid_of_body(body)
 
 
 def contact_of(solid: Surface | None, size: float, feature: str, rng: np.random.Generator) -> Contact:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 from harness.compare.outcome import Case
@@ -13,7 +14,7 @@ from harness.vocabulary import NEAR_QUERIES, MethodName
 from harness.whole_file import write_whole
 
 
-def save(case: Case, folder: Path, name: str, mesh: Path | None, script: str | None = None) -> Path:
+def save(case: Case, folder: Path, name: str, meshes: Sequence[Path], script: str | None = None) -> Path:
     """Write a case whose bodies are alone: at rest at their poses, or moving through one frame.
 
     Parameters
@@ -21,7 +22,7 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None, script: str | N
     case : Case
     folder : made if it is not there
     name : of the file, without suffix
-    mesh : the file of its mesh, which is copied beside the experiment
+    meshes : the files of its meshes, those that its bodies have of which are copied beside the experiment
     script : a Python file that shows the same without this program, written beside it
 
     Returns
@@ -30,29 +31,37 @@ def save(case: Case, folder: Path, name: str, mesh: Path | None, script: str | N
         Of the experiment.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    if mesh is not None and not (folder / mesh.name).exists():
-        shutil.copyfile(mesh, folder / mesh.name)
+    for number in set(case.scene.mesh_of.tolist()) if meshes else ():
+        if not (folder / meshes[number].name).exists():
+            shutil.copyfile(meshes[number], folder / meshes[number].name)
     path = folder / f"{name}.yaml"
     if script is not None:
         write_whole(path.with_suffix(".py"), script)
-    write_whole(path, text_of(case, mesh.name if mesh else None))
+    write_whole(path, text_of(case, [mesh.name for mesh in meshes]))
     return path
 
 
-def text_of(case: Case, mesh: str | None) -> str:
+def text_of(case: Case, meshes: Sequence[str]) -> str:
     """The experiment: `harness compare` asks the same of this pose, or this frame, alone, and `harness view` shows it.
 
     Parameters
     ----------
     case : Case
-    mesh : name of a mesh file that will lie beside the experiment
+    meshes : names of the files of its meshes, which will lie beside the experiment
     """
     scene, (i, j), asked = case.scene, case.bodies, case.question
     methods = [MethodName.read(name, scene.shape, asked.query) for name in case.backends]
     leaves = {leaf: [getattr(method, leaf) for method in methods] for leaf in ("backend", "algorithm")}
-    declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": _rows(case)}
-    if mesh is not None and scene.shape != "sphere":
-        declared["mesh"] = mesh
+    bodies = _rows(case)
+    declared = {"shape": scene.shape, "box": scene.box.sides.tolist(), "bodies": bodies}
+    if len(scene.ignored):
+        declared["ignore"] = scene.ignored.tolist()
+    if meshes and scene.shape != "sphere":
+        named = [meshes[number] for number in scene.mesh_of.tolist()]
+        if len(set(named)) == 1:
+            declared["mesh"] = named[0]
+        else:
+            bodies[:] = [{"mesh": name, **body} for name, body in zip(named, bodies, strict=True)]
     verb = "are" if case.both_wrong else "is"
     motion: dict[str, object] = {"duration": 0, "response": "none"}
     if isinstance(case.pose, Frame):

@@ -124,7 +124,7 @@ def _written(case: Case, call: Call) -> str | None:
     if truth.touching != case.judgement.touching:
         return None
     proof = truth.certificate
-    solids = [scene.solid_of(float(bodies.sizes[body])) for body in (i, j)]
+    solids = [scene.solid_of_body(body) for body in (i, j)]
     if truth.touching:
         sides = [proof["first"], proof["second"]]
         if "faces" in proof:  # of two triangles: their corners are vertices of the mesh

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.experiment.messages import listed
-from harness.vocabulary import ALGORITHMS, NEAR_QUERIES, QUERIES, Query, algorithms_of
+from harness.vocabulary import ALGORITHMS, NATIVE, NEAR_QUERIES, QUERIES, Query, algorithms_of
 
 Values = Mapping[str, Any]
 
@@ -80,8 +80,32 @@ def has_one_box(values: Values) -> Conflict | None:
 
 def has_a_mesh(values: Values) -> Conflict | None:
     """Only spheres need no mesh."""
-    if values["mesh"] is None and values["shape"] != "sphere":
+    own = values["bodies"] is not None and all(body.mesh is not None for body in values["bodies"])
+    if values["mesh"] is None and not own and values["shape"] != "sphere":
         return Conflict(f"shape {values['shape']} needs a mesh; only shape sphere does without", ("shape", "mesh"))
+    return None
+
+
+def native_sizes_have_a_mesh(values: Values) -> Conflict | None:
+    """A size that is read from a mesh needs one."""
+    if values["mesh"] is not None:
+        return None
+    bodies = values["bodies"]
+    native = values["size"].is_native if bodies is None else any(
+        body.size == NATIVE and body.mesh is None for body in bodies
+    )  # fmt: skip
+    if native:
+        return Conflict("size native is that of a mesh, and there is none; mesh is {}", ("size", "mesh"))
+    return None
+
+
+def ignored_pairs_exist(values: Values) -> Conflict | None:
+    """A pair is of two bodies that there are."""
+    count = values["count"] if values["bodies"] is None else len(values["bodies"])
+    for i, j in values["ignore"]:
+        if i == j or max(i, j) >= (count or 0):
+            message = f"ignore names the pair [{i}, {j}], which is none of {count} bodies counted from 0"
+            return Conflict(message, ("bodies" if values["count"] is None else "count", "ignore"))
     return None
 
 
@@ -162,6 +186,14 @@ def backend_answers_the_query(values: Values) -> Conflict | None:
     return None
 
 
+def events_ignore_no_pair(values: Values) -> Conflict | None:
+    """The search for events knows all pairs or none."""
+    if values["ignore"] and not ALGORITHMS[values["algorithm"]].stepped:
+        message = "ignored pairs are for algorithms that step from frame to frame; algorithm {} computes events"
+        return Conflict(message, ("ignore", "algorithm"), excludable=True)
+    return None
+
+
 def bodies_pass_through(values: Values) -> Conflict | None:
     """A response answers pairs that touch; without one the motion is the same for every method and every query."""
     query, response = values["query"], values["response"]
@@ -171,7 +203,13 @@ def bodies_pass_through(values: Values) -> Conflict | None:
     return None
 
 
-SCENE: tuple[Rule, ...] = (has_count_or_bodies, has_one_box, has_a_mesh)
+SCENE: tuple[Rule, ...] = (
+    has_count_or_bodies,
+    has_one_box,
+    has_a_mesh,
+    native_sizes_have_a_mesh,
+    ignored_pairs_exist,
+)
 MOTION: tuple[Rule, ...] = (restitution_has_an_effect, frames_can_be_counted)
 ENGINE: tuple[Rule, ...] = (
     backend_has_the_algorithm,
@@ -185,5 +223,6 @@ POINT: tuple[Rule, ...] = (
     *ENGINE,
     backend_has_the_shape,
     backend_has_gaps_of_the_shape,
+    events_ignore_no_pair,
     bodies_pass_through,
 )

@@ -1,4 +1,7 @@
-"""A quantity that differs from body to body: a number, `{uniform: [low, high]}` or `{choice: [...]}`."""
+"""A quantity that differs from body to body: a number, `{uniform: [low, high]}` or `{choice: [...]}`.
+
+A size may be `native` too: that of the mesh in its file.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field
 
 from harness.experiment.messages import shown
 from harness.experiment.number import Number, holding, rising, wrong
+from harness.vocabulary import NATIVE, NativeSize
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,13 +42,16 @@ def _kind(value: Any) -> str | None:
         return "choice"
     if isinstance(value, Mapping | list | tuple):
         return None
-    return "constant"
+    return NATIVE if value == NATIVE else "constant"
 
 
 class Distribution(
     RootModel[
         Annotated[
-            Annotated[Number, Tag("constant")] | Annotated[Uniform, Tag("uniform")] | Annotated[Choice, Tag("choice")],
+            Annotated[Number, Tag("constant")]
+            | Annotated[Uniform, Tag("uniform")]
+            | Annotated[Choice, Tag("choice")]
+            | Annotated[NativeSize, Tag(NATIVE)],
             Discriminator(
                 _kind,
                 custom_error_type="said",
@@ -65,15 +72,24 @@ class Distribution(
     model_config = ConfigDict(frozen=True)
 
     @property
-    def kind(self) -> Literal["constant", "uniform", "choice"]:
-        """Which of the three it is."""
+    def kind(self) -> Literal["constant", "uniform", "choice"] | NativeSize:
+        """Which of the four it is."""
+        if self.root == NATIVE:
+            return NATIVE
         if isinstance(self.root, Uniform):
             return "uniform"
         return "choice" if isinstance(self.root, Choice) else "constant"
 
     @property
+    def is_native(self) -> bool:
+        """Whether the meshes say it, each in its file."""
+        return self.kind == NATIVE
+
+    @property
     def values(self) -> tuple[float, ...]:
-        """The one value, the low and the high one, or all that can be chosen."""
+        """The one value, the low and the high one, or all that can be chosen; none where the meshes say it."""
+        if isinstance(self.root, str):
+            return ()
         if isinstance(self.root, Uniform):
             return self.root.uniform
         return self.root.choice if isinstance(self.root, Choice) else (self.root,)
@@ -100,12 +116,14 @@ class Distribution(
 
 
 def _positive(distribution: Distribution) -> Distribution:
-    if min(distribution.values) <= 0:
+    if min(distribution.values, default=1.0) <= 0:
         raise wrong(f"must be greater than 0, not {shown(min(distribution.values))}")
     return distribution
 
 
 def _not_negative(distribution: Distribution) -> Distribution:
+    if distribution.kind == NATIVE:
+        raise wrong("must be a number, {uniform: [low, high]} or {choice: [value, ...]}; only a size can be native")
     if min(distribution.values) < 0:
         raise wrong(f"must be at least 0, not {shown(min(distribution.values))}")
     return distribution

@@ -84,6 +84,12 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
         for point in resolved:
             first.setdefault(_key(point), point)
         unique = list(first.values())
+        if measure.reference is not None and any(map(_ignores_and_answers, unique)):
+            message = (
+                "a reference with response reflect or elastic is computed from event to event, which ignores no pair"
+            )
+            problems.add(("measure", "reference", KEY), f"{message}; leave out scene.ignore, or set response none")
+            return expansion
         expansion.points = tuple(_points(unique, measure.reference))
         expansion.swept = _swept(unique, mentioned)
     return expansion
@@ -227,7 +233,7 @@ def _key(point: Resolved) -> tuple[str | None, ...]:
 
 def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> Iterator[Point]:
     """Points; equal scenes, motions and engines are one object."""
-    shapes = {point["shape"].value for point in resolved if point["mesh"].value is not None}
+    shapes = {point["shape"].value for point in resolved if _has_a_mesh(point)}
     most_exact: Shape = next((shape for shape in _EXACT_FIRST if shape in shapes), "sphere")
     made: dict[tuple[str | None, ...], Any] = {}
     for point in resolved:
@@ -237,8 +243,17 @@ def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> It
             if key not in made:
                 made[key] = model(**{leaf: point[leaf].value for leaf in model.model_fields})
             parts[section] = made[key]
-        shape: Shape = "sphere" if point["mesh"].value is None else most_exact
+        shape: Shape = most_exact if parts["scene"].mesh_names else "sphere"
         yield Point(**parts, reference=Reference(reference, shape) if reference else None)
+
+
+def _ignores_and_answers(point: Resolved) -> bool:
+    return bool(point["ignore"].value) and point["response"].value != "none"
+
+
+def _has_a_mesh(point: Resolved) -> bool:
+    own = (body.mesh for body in point["bodies"].value or ())
+    return point["mesh"].value is not None or any(name is not None for name in own)
 
 
 def _swept(points: list[Resolved], mentioned: list[str]) -> tuple[str, ...]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 from harness.errors import Problem
 from harness.experiment.criterion import Criterion
 from harness.experiment.document import Document
-from harness.experiment.leaves import identity, plain
+from harness.experiment.leaves import identity, mesh_names_in, plain
 from harness.experiment.presentation import Published, ReportSpec
 from harness.experiment.problems import Origin, problem_at
 from harness.experiment.schema import EngineSpec, MeasureSpec, MotionSpec, ReferenceSpec, SceneSpec
@@ -92,6 +93,14 @@ class Experiment:
     def problem(self, path: Sequence[str | int], message: str) -> Problem:
         """A problem with the value at a key path of the file, such as ('scene', 'mesh')."""
         return self.document.problem(path, message)
+
+    def mesh_problems(self, name: str, message: str) -> Iterator[Problem]:
+        """A problem with a mesh of this name, at every place that names it."""
+        for (leaf, text), origin in self.origins.items():
+            for below, found in mesh_names_in(leaf, json.loads(text)):
+                if found == name:
+                    place = (*origin, *below) if isinstance(origin, tuple) else origin
+                    yield problem_at(self.document, place, message)
 
     def leaf_problem(self, leaf: str, value: Any, message: str, below: Sequence[str | int] = ()) -> Problem:
         """A problem with one of the values that a leaf has, at the place that gives it: base, sweep or --set.

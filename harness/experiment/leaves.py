@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any
@@ -53,7 +53,7 @@ class Leaf:
     @property
     def is_list(self) -> bool:
         """Whether one value of it is a list already."""
-        return self.name in ("box", "bodies")
+        return self.name in ("box", "bodies", "ignore")
 
     @cached_property
     def _adapter(self) -> TypeAdapter[Any]:
@@ -74,6 +74,10 @@ class Leaf:
         """Whether a list is one of several values, not one value."""
         if not isinstance(value, list | tuple):
             return False
+        if self.name == "ignore":  # one value is a list of pairs
+            return any(
+                isinstance(pair, list | tuple) for item in value if isinstance(item, list | tuple) for pair in item
+            )
         return not self.is_list or any(isinstance(item, list | tuple) for item in value)
 
     @property
@@ -99,6 +103,22 @@ def identity(value: Any) -> str:
 def plain(value: Any) -> Any:
     """A leaf's value as JSON holds it, which is as YAML does."""
     return to_jsonable_python(value)
+
+
+def mesh_names_in(leaf: str, value: Any) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """The meshes that a value of a leaf names, as JSON holds it, each with the keys that lead to it.
+
+    >>> list(mesh_names_in("mesh", {"choice": ["a.ply", "b.ply"]}))
+    [(('choice', 0), 'a.ply'), (('choice', 1), 'b.ply')]
+    """
+    if leaf == "mesh" and isinstance(value, dict):
+        yield from ((("choice", place), name) for place, name in enumerate(value["choice"]))
+    elif leaf == "mesh" and value is not None:
+        yield (), value
+    elif leaf == "bodies":
+        for place, body in enumerate(value or ()):
+            if body["mesh"] is not None:
+                yield (place, "mesh"), body["mesh"]
 
 
 def unknown_key(name: str, options: Iterable[str]) -> str:

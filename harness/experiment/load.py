@@ -19,7 +19,7 @@ from harness.experiment.document import KEY, LARGEST_FILE, read_document, read_v
 from harness.experiment.expand import Expansion, expand
 from harness.experiment.experiment import Experiment
 from harness.experiment.kind import is_truth_declaration
-from harness.experiment.leaves import LEAVES, SECTIONS, unknown_key
+from harness.experiment.leaves import LEAVES, SECTIONS, mesh_names_in, unknown_key
 from harness.experiment.mesh_location import locate_mesh
 from harness.experiment.messages import near, shown
 from harness.experiment.presentation import Published, ReportSpec
@@ -262,12 +262,11 @@ def _locate_meshes(expansion: Expansion, folder: Path, problems: FileProblems) -
     """The files of all meshes that points refer to."""
     located: dict[str, Path] = {}
     for (leaf, text), origin in expansion.origins.items():
-        reference = json.loads(text) if leaf == "mesh" else None
-        if reference is not None:
+        for below, reference in mesh_names_in(leaf, json.loads(text)):
             try:
                 located[reference] = locate_mesh(reference, folder)
             except NotInstalledError as error:
                 problems.add_lacking(origin, str(error))
             except InputError as error:
-                problems.add(origin, str(error))
+                problems.add((*origin, *below) if isinstance(origin, tuple) else origin, str(error))
     return located

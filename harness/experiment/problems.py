@@ -93,5 +93,5 @@ def _subject(path: KeyPath) -> str:
 
 def _steps(error: Mapping[str, Any]) -> KeyPath:
     """An error's location within the value; the kinds of a distribution, which pydantic names too, are no steps."""
-    steps = tuple(step for step in error["loc"] if step != "constant")
+    steps = tuple(step for step in error["loc"] if step not in ("constant", "file"))
     return (*steps, KEY) if error["type"] == "extra_forbidden" else steps

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from harness.experiment.combinations import ENGINE, MOTION, SCENE, Rule, conflicts
 from harness.experiment.distribution import Distribution, NonNegativeDistribution, PositiveDistribution
 from harness.experiment.number import Bytes, Number, Switch, Vector, Whole, holding, wrong
 from harness.vocabulary import (
     DEFAULT_ALGORITHM,
+    NATIVE,
     REFERENCE_ALGORITHM,
     Algorithm,
     Family,
     FamilyQuery,
+    NativeSize,
     Query,
     ReferenceAlgorithm,
     Response,
@@ -29,6 +32,7 @@ NotNegative = Annotated[Number, Field(ge=0)]
 MOST_BODIES = 10**9
 LARGEST_SEED = 2**63 - 1
 MOST_RUNS = 10**9
+BodyNumber = Annotated[Whole, Field(ge=0)]
 
 
 class Declared(BaseModel):
@@ -50,13 +54,37 @@ def _turned(quaternion: tuple[float, ...]) -> tuple[float, ...]:
     return quaternion
 
 
+class MeshChoice(Declared):
+    """One of these meshes, all equally likely."""
+
+    choice: tuple[Text, ...] = Field(min_length=1, description="[file, file, ...]")
+
+
+def _mesh_kind(value: object) -> str:
+    return "choice" if isinstance(value, Mapping | MeshChoice) else "file"
+
+
+def _size_kind(value: object) -> str:
+    return NATIVE if value == NATIVE else "constant"
+
+
+MeshFiles = Annotated[
+    Annotated[Text, Tag("file")] | Annotated[MeshChoice, Tag("choice")],
+    Discriminator(_mesh_kind),
+]
+BodySize = Annotated[
+    Annotated[Positive, Tag("constant")] | Annotated[NativeSize, Tag(NATIVE)], Discriminator(_size_kind)
+]
+
+
 class BodySpec(Declared):
     """One body, given in full."""
 
     position: Vector = Field(description="centre [x, y, z], m")
+    mesh: Text | None = Field(None, description="its own mesh, in place of that of the scene")
     velocity: Vector = Field((0.0, 0.0, 0.0), description="[x, y, z], m/s")
     spin: Vector = Field((0.0, 0.0, 0.0), description="angular velocity [x, y, z] in the world frame, rad/s")
-    size: Positive = Field(1.0, description="diameter of the bounding sphere, m")
+    size: BodySize = Field(1.0, description="diameter of the bounding sphere, m; native: as its mesh's file has it")
     mass: Positive | None = Field(None, description="kg; size³ if left out")
     orientation: Annotated[
         tuple[Number, Number, Number, Number], holding(4, "4 numbers (w, x, y, z)"), AfterValidator(_turned)
@@ -66,16 +94,22 @@ class BodySpec(Declared):
 class SceneSpec(Declared):
     """The bodies, and the box around them."""
 
-    mesh: Text | None = Field(
+    mesh: MeshFiles | None = Field(
         None,
-        description="file beside the experiment or in meshes/, or package:NAME/FILE; needed unless shape is sphere",
+        description="file beside the experiment or in meshes/, package:NAME/FILE, or {choice: [file, ...]}, drawn for "
+        "each body; needed unless shape is sphere",
     )
     shape: Shape = Field("mesh", description="what the narrow phase sees: bounding sphere, hull or mesh")
     count: Annotated[Whole, Field(ge=0, le=MOST_BODIES)] | None = Field(None, description="number of random bodies")
     bodies: Annotated[tuple[BodySpec, ...], Field(min_length=1)] | None = Field(
         None, description="the bodies one by one, instead of count"
     )
-    size: PositiveDistribution = Field(Distribution(1.0), description="diameter of the bounding sphere, m")
+    size: PositiveDistribution = Field(
+        Distribution(1.0), description="diameter of the bounding sphere, m; native: as the mesh's file has it"
+    )
+    ignore: tuple[Annotated[tuple[BodyNumber, BodyNumber], holding(2, "2 body numbers")], ...] = Field(
+        (), description="pairs that are never asked about, [[i, j], ...], bodies counted from 0"
+    )
     box: Annotated[tuple[Positive, Positive, Positive], holding(3, "3 sides")] | None = Field(
         None, description="sides [x, y, z], m, centred at the origin"
     )
@@ -93,6 +127,19 @@ class SceneSpec(Declared):
     def _possible(self) -> SceneSpec:
         refuse_conflicts(self, SCENE)
         return self
+
+    @property
+    def mesh_choice(self) -> tuple[str, ...]:
+        """What a body without a mesh of its own may have."""
+        if isinstance(self.mesh, MeshChoice):
+            return self.mesh.choice
+        return () if self.mesh is None else (self.mesh,)
+
+    @property
+    def mesh_names(self) -> tuple[str, ...]:
+        """The meshes that the scene names, each once, in the order of the file."""
+        own = [body.mesh for body in self.bodies or () if body.mesh is not None]
+        return tuple(dict.fromkeys([*self.mesh_choice, *own]))
 
 
 class MotionSpec(Declared):

@@ -112,7 +112,7 @@ class Queried:
             self._impacts = NativeImpacts(cast(Impacts, self.backend), scene)
         else:
             backend = cast(Distances, self.backend)
-            self._near = NativeNearPairs(backend, len(scene.bodies), self._within, self._name.query)
+            self._near = NativeNearPairs(backend, scene, self._within, self._name.query)
 
     def near(self, positions: Floats, quaternions: Floats) -> NearPairs:
         """The near pairs at a pose, and how far apart they are where that is asked."""

@@ -25,9 +25,12 @@ class BruteForce(SteppedMethod):
 
     def decide_detection(self, scene: Scene, decisions: Decisions) -> None:
         count = len(scene.bodies)
+        asked = count * (count - 1) // 2 - len(scene.ignored)
         for stage in DETECTION:
             if stage == "fcl":
-                every = f"all {count * (count - 1) // 2} pairs are put to FCL every frame"
+                every = f"all {asked} pairs are put to FCL every frame"
+                if len(scene.ignored):
+                    every = f"{asked} pairs are put to FCL every frame, all but the {len(scene.ignored)} ignored"
                 decisions.take("fcl", True, every, fixed=FCL_DECIDES)
             else:
                 decisions.take(stage, False, "brute force puts every pair to FCL", fixed=_FIXED)

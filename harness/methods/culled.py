@@ -7,13 +7,14 @@ apart, and FCL decides the rest. Any broad phase of `harness.broadphase` is used
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from harness.arrays import Floats, Pairs
+from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
@@ -21,7 +22,7 @@ from harness.methods.query_stages import decide_exact_stages
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
-from harness.methods.warm_up_scene import TOUCHING, tetrahedron, two_bodies
+from harness.methods.warm_up_scene import TOUCHING, of_meshes, two_bodies
 from harness.narrowphase.containment import Containment
 from harness.narrowphase.gjk import MARGIN
 from harness.narrowphase.hull_pairs import HullPairs
@@ -100,7 +101,7 @@ class Culled(SteppedMethod):
 
     def decide_hulls(self, scene: Scene, decisions: Decisions) -> bool:
         """Whether the hulls of close pairs are put to a kernel."""
-        vertices = len(scene.mesh.hull.vertices) if scene.mesh else 0
+        vertices = span_of([len(mesh.hull.vertices) for mesh in scene.meshes])
         if scene.shape == "hull":
             why = f"the hulls of {vertices} vertices are settled by separating axis and GJK"
         else:
@@ -123,7 +124,7 @@ class Culled(SteppedMethod):
         return self.scheme.make(scene.enclosing_radii, scene.box, plan.keeps("size_classes"))
 
     def detector(self, scene: Scene, plan: Plan) -> Detector:
-        broad_phase = self.broad_phase(scene, plan)
+        broad_phase = asked_about(self.broad_phase(scene, plan), scene.ignored)
         if scene.shape == "sphere":
             return CloseSpheres(broad_phase)
         # only a scene of hulls or meshes needs FCL, and then it is imported
@@ -131,16 +132,16 @@ class Culled(SteppedMethod):
 
         return CulledDetector(broad_phase, narrow_phase(scene, plan))
 
-    def warm_ups(self) -> Iterator[WarmUp]:
-        yield from super().warm_ups()
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
+        yield from super().warm_ups(meshes)
         if self.name.query != "collision":
             return
         algorithm = self.name.algorithm
         yield f"close pairs of {algorithm}", partial(_find_close_pairs, self)
         if self.name.shape != "sphere":
-            yield "pairs of hulls", _settle_hulls
+            yield f"pairs of hulls{of_meshes(meshes)}", partial(_settle_hulls, meshes)
         if self.name.shape == "mesh":
-            yield "pairs of meshes", _settle_meshes
+            yield f"pairs of meshes{of_meshes(meshes)}", partial(_settle_meshes, meshes)
 
 
 class CloseSpheres:
@@ -202,21 +203,26 @@ def no_solids(decisions: Decisions) -> str:
 
 
 def _decide_crossing(scene: Scene, hulls: bool, decisions: Decisions) -> bool:
-    mesh = scene.mesh
-    if scene.shape == "hull" or mesh is None:
+    if scene.shape == "hull":
         fixed = "a hull that overlaps touches, whether its surface crosses another or not"
         return decisions.take("crossing", False, "the shape is the hull", fixed=fixed)
     if not hulls:
         fixed = "it starts from pairs whose hulls overlap; keep hull_axis"
         return decisions.take("crossing", False, "without the hulls' verdict FCL has all close pairs", fixed=fixed)
-    if mesh.convex and equal_sizes(scene):
-        why = "the mesh is convex, thus its own hull, and of one size: whether the hulls overlap decides"
-        return decisions.take("crossing", False, why)
-    if mesh.convex:
-        why = "the mesh is convex, but of bodies of different sizes one may be inside the other, which is no hit"
+    convex = sum(mesh.convex for mesh in scene.meshes)
+    several = len(scene.meshes) > 1
+    if convex == len(scene.meshes) and equal_sizes(scene):
+        what = "all meshes are convex, thus their own hulls," if several else "the mesh is convex, thus its own hull,"
+        return decisions.take("crossing", False, f"{what} and of one size: whether the hulls overlap decides")
+    if convex == len(scene.meshes):
+        what = "all meshes are convex" if several else "the mesh is convex"
+        why = f"{what}, but of bodies of different sizes one may be inside the other, which is no hit"
     else:
-        why = "the mesh is not convex: two triangles that cross prove a hit, a full traversal that there is none"
-    return decisions.take("crossing", True, f"{why} ({len(mesh.faces)} faces)")
+        what = f"{len(scene.meshes) - convex} of {len(scene.meshes)} meshes are" if several else "the mesh is"
+        why = f"{what} not convex: two triangles that cross prove a hit, a full traversal that there is none"
+        if convex and equal_sizes(scene):
+            why += "; of two convex ones the hulls decide"
+    return decisions.take("crossing", True, f"{why} ({span_of([len(mesh.faces) for mesh in scene.meshes])} faces)")
 
 
 def _decide_containment(scene: Scene, hulls: bool, decisions: Decisions) -> None:
@@ -234,6 +240,16 @@ def _decide_containment(scene: Scene, hulls: bool, decisions: Decisions) -> None
         decisions.take("containment", True, why, fixed=fixed)
 
 
+def span_of(numbers: Sequence[int]) -> str:
+    """From the least to the most, in words: one number where they are the same.
+
+    >>> span_of([12]), span_of([12, 1753, 12])
+    ('12', '12 to 1753')
+    """
+    least, most = min(numbers, default=0), max(numbers, default=0)
+    return str(least) if least == most else f"{least} to {most}"
+
+
 def equal_sizes(scene: Scene) -> bool:
     """Whether all bodies are of one size."""
     sizes = scene.bodies.sizes
@@ -247,16 +263,19 @@ def _find_close_pairs(method: Culled) -> None:
     _ = found.counters  # what is counted is compiled as well
 
 
-def _settle_hulls() -> None:
-    mesh, bodies = tetrahedron(), two_bodies("hull").bodies
-    HullPairs(mesh.hull, MARGIN).settle(TOUCHING, Places(bodies.sizes).at(bodies.positions, bodies.quaternions))
-
-
-def _settle_meshes() -> None:
-    mesh, bodies = tetrahedron(), two_bodies("mesh").bodies
+def _settle_hulls(meshes: int) -> None:
+    scene = two_bodies("hull", meshes)
+    bodies, hulls = scene.bodies, [mesh.hull for mesh in scene.meshes]
     placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
-    MeshPairs(mesh).settle(TOUCHING, placement)
-    Containment(mesh).contained(TOUCHING, placement)
+    HullPairs(hulls, scene.mesh_of, MARGIN).settle(TOUCHING, placement)
+
+
+def _settle_meshes(meshes: int) -> None:
+    scene = two_bodies("mesh", meshes)
+    bodies = scene.bodies
+    placement = Places(bodies.sizes).at(bodies.positions, bodies.quaternions)
+    MeshPairs(scene.meshes, scene.mesh_of).settle(TOUCHING, placement)
+    Containment(scene.meshes, scene.mesh_of).contained(TOUCHING, placement)
 
 
 METHOD = Culled

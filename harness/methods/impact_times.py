@@ -10,7 +10,8 @@ import numpy as np
 from harness.arrays import Floats
 from harness.backends.protocol import ImpactTimes
 from harness.broadphase.pairs import BroadPhase
-from harness.methods.narrow_phase import hull_of_size_1
+from harness.methods.narrow_phase import hulls_of_size_1
+from harness.narrowphase.body_shapes import hulls_of_bodies, shapes_of_bodies
 from harness.narrowphase.frame_flights import FrameFlights
 from harness.narrowphase.gjk import LEAST_GAP
 from harness.narrowphase.impact_pairs import (
@@ -137,11 +138,12 @@ class _Search(Protocol):
 
 def _search_of(scene: Scene) -> tuple[_Search, float]:
     """What searches a frame of the bodies of a scene, and how far they reach from their centres, of size."""
-    if scene.shape == "sphere" or scene.mesh is None:
+    if scene.shape == "sphere":
         return sphere_pair_onsets, 0.5
     if scene.shape == "hull":
-        vertices = hull_of_size_1(scene).vertices
-        hull, reach = support_map(vertices), float(np.linalg.norm(vertices, axis=1).max())
-        return lambda asked, flights, found: hull_pair_onsets(asked, flights, hull, found), reach
-    shape = mesh_shape(scene.mesh)
-    return lambda asked, flights, found: mesh_pair_onsets(asked, flights, shape, found), shape.radius
+        vertices = [hull.vertices for hull in hulls_of_size_1(scene)]
+        hulls = hulls_of_bodies([support_map(of_mesh) for of_mesh in vertices], scene.mesh_of)
+        reach = max(float(np.linalg.norm(of_mesh, axis=1).max()) for of_mesh in vertices)
+        return lambda asked, flights, found: hull_pair_onsets(asked, flights, hulls, found), reach
+    shapes = shapes_of_bodies([mesh_shape(mesh) for mesh in scene.meshes], scene.mesh_of)
+    return lambda asked, flights, found: mesh_pair_onsets(asked, flights, shapes, found), shapes.radius

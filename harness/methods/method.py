@@ -90,5 +90,10 @@ class Method(ABC):
         """
 
     @abstractmethod
-    def warm_ups(self) -> Iterator[WarmUp]:
-        """What to compile before a run, so that no clock sees it."""
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
+        """What to compile before a run, so that no clock sees it.
+
+        Parameters
+        ----------
+        meshes : how many the scene has: kernels over bodies of one mesh are others than over those of several
+        """

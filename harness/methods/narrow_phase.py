@@ -73,10 +73,9 @@ class HullNarrowPhase:
     """Settles hulls in a kernel, and puts to FCL only pairs nearer to touching than rounding can tell."""
 
     def __init__(self, scene: Scene) -> None:
-        assert scene.mesh is not None, "hulls come from a mesh"
         self._fcl = FclPairTest(scene)
         self._places = Places(scene.bodies.sizes)
-        self._hulls = HullPairs(hull_of_size_1(scene), MARGIN)
+        self._hulls = HullPairs(hulls_of_size_1(scene), scene.mesh_of, MARGIN)
         self._tests = 0
 
     @property
@@ -111,15 +110,16 @@ class MeshNarrowPhase:
     """
 
     def __init__(self, scene: Scene, *, crossing: bool = True, containment: bool = True) -> None:
-        assert scene.mesh is not None, "meshes come from a file"
-        sizes = scene.bodies.sizes
+        sizes, meshes, mesh_of = scene.bodies.sizes, scene.meshes, scene.mesh_of
+        margin = max(ON_HULL if mesh.convex else MARGIN + overhang(mesh) for mesh in meshes)
         self._fcl = FclPairTest(scene)
         self._places = Places(sizes)
-        self._hulls = HullPairs(scene.mesh.hull, ON_HULL if scene.mesh.convex else MARGIN + overhang(scene.mesh))
-        self._settle = MeshPairs(scene.mesh).settle if crossing else _all_open
+        self._hulls = HullPairs([mesh.hull for mesh in meshes], mesh_of, margin)
+        self._settle = MeshPairs(meshes, mesh_of).settle if crossing else _all_open
         # Convex bodies that overlap touch, unless one contains the other, for which it must be larger.
-        self._hull_decides = scene.mesh.convex
-        self._inside = Containment(scene.mesh).contained if containment else _none_inside
+        self._convex = np.array([mesh.convex for mesh in meshes])[mesh_of]
+        self._any_convex = bool(self._convex.any())
+        self._inside = Containment(meshes, mesh_of).contained if containment else _none_inside
         self._sizes = sizes
         self._hull_tests = self._tests = self._contained = 0
         self.contained: Pairs = np.empty((0, 2), np.int64)
@@ -142,13 +142,15 @@ class MeshNarrowPhase:
         placement = self._places.at(positions, quaternions)
         verdicts, _, _ = self._hulls.settle(close, placement)
         may_touch = ~which(verdicts, PairVerdict.SEPARATE)
-        close, verdicts = close[may_touch], verdicts[may_touch]
-        if self._hull_decides:
-            self._tests += len(may_touch)
+        if self._any_convex:
+            convex = self._convex[close[:, 0]] & self._convex[close[:, 1]]
+            self._tests += np.count_nonzero(convex | may_touch)
+            close, verdicts, convex = close[may_touch], verdicts[may_touch], convex[may_touch]
             same_size = self._sizes[close[:, 0]] == self._sizes[close[:, 1]]
-            asked = np.flatnonzero(which(verdicts, PairVerdict.UNDECIDED) | ~same_size)
+            asked = np.flatnonzero(which(verdicts, PairVerdict.UNDECIDED) | ~(convex & same_size))
             verdicts[asked] = self._settle(close[asked], placement)
         else:
+            close = close[may_touch]
             self._tests += len(close)
             verdicts = self._settle(close, placement)
         hit = which(verdicts, PairVerdict.TOUCHING)
@@ -161,21 +163,20 @@ class MeshNarrowPhase:
         return touching
 
 
-def hull_of_size_1(scene: Scene) -> Hull:
-    """The hull that the bodies have in their sizes.
+def hulls_of_size_1(scene: Scene) -> list[Hull]:
+    """The hulls that the bodies have in their sizes, a mesh each.
 
     Raises
     ------
     InputError
         If each size is given a hull of its own: the kernels hold one for all.
     """
-    assert scene.mesh is not None, "hulls come from a mesh"
-    if not scene.hulls:
-        return scene.mesh.hull
-    if len(scene.hulls) > 1:
+    hulls = [mesh.hull for mesh in scene.meshes]
+    if len(scene.hulls) != len({mesh for mesh, _ in scene.hulls}):
         raise InputError("it holds one hull for bodies of all sizes, and cannot take one for each size")
-    ((size, hull),) = scene.hulls.items()
-    return hull_of(hull.vertices / size, hull.faces)
+    for (mesh, size), hull in scene.hulls.items():
+        hulls[mesh] = hull_of(hull.vertices / size, hull.faces)
+    return hulls
 
 
 def _all_open(pairs: Pairs, placement: Placement) -> PairVerdicts:

@@ -10,6 +10,7 @@ import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends import registry
+from harness.backends.all_but_ignored import AllButIgnored
 from harness.backends.protocol import Backend, Distances, Impacts, ImpactTimes, NearPairs, queries, set_accuracy
 from harness.backends.statement import approximation
 from harness.errors import InputError
@@ -42,19 +43,18 @@ class Native(SteppedMethod):
         return (f"APPROXIMATION: {replaced}",) if replaced else ()
 
     def detector(self, scene: Scene, plan: Plan) -> Detector:
-        return self._loaded(scene)
+        backend = self._loaded(scene)
+        return AllButIgnored(backend, scene.ignored) if len(scene.ignored) else backend
 
     def near_finder(self, scene: Scene, plan: Plan) -> NearFinder:
-        return NativeNearPairs(
-            cast(Distances, self._loaded(scene)), len(scene.bodies), self.within or 0.0, self.name.query
-        )
+        return NativeNearPairs(cast(Distances, self._loaded(scene)), scene, self.within or 0.0, self.name.query)
 
     def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:
         return NativeImpacts(cast(Impacts, self._loaded(scene)), scene)
 
-    def warm_ups(self) -> Iterator[WarmUp]:
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         if self.name.query == "collision":
-            yield from super().warm_ups()
+            yield from super().warm_ups(meshes)
         else:
             yield f"frames around {self.name.query}", partial(_ask_nobody, self.name)
 
@@ -98,7 +98,7 @@ _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 def _ask_nobody(name: MethodName) -> None:
     scene, law, method = two_bodies(name.shape), MotionLaw(0.6, 0.3, "none"), Native(name)
     plan, nobody = method.plan(scene, law), cast(Any, _Nobody())
-    near, impacts = NativeNearPairs(nobody, 2, 1.0), NativeImpacts(nobody, scene)
+    near, impacts = NativeNearPairs(nobody, scene, 1.0), NativeImpacts(nobody, scene)
     for asking in (NearAsking(scene, plan, near, gaps=True), ImpactAsking(scene, plan, impacts)):
         asking.fly(law, traced=True)
 

@@ -12,6 +12,7 @@ from harness.backends.contract import read_only, require_gaps, require_impacts, 
 from harness.backends.protocol import Distances, Impacts, ImpactTimes, Near, NearPairs
 from harness.methods.impact_times import FrameMotion
 from harness.motion.kinematics import turn
+from harness.scene.ignored_pairs import kept as kept_of
 from harness.scene.scene import Scene
 from harness.vocabulary import Query
 
@@ -22,13 +23,14 @@ class NativeNearPairs:
     Parameters
     ----------
     backend : loaded
-    count : of bodies
+    scene : Scene
     within : m
     query : "distance"; or "tolerance", for which a backend that can is asked for pairs without their gaps
     """
 
-    def __init__(self, backend: Distances | Near, count: int, within: float, query: Query = "distance") -> None:
-        self._backend, self._count, self._within = backend, count, within
+    def __init__(self, backend: Distances | Near, scene: Scene, within: float, query: Query = "distance") -> None:
+        self._backend, self._count, self._within = backend, len(scene.bodies), within
+        self._ignored = scene.ignored
         self._gapless = query == "tolerance" and isinstance(backend, Near)
 
     @property
@@ -44,8 +46,13 @@ class NativeNearPairs:
 
     def checked(self, found: NearPairs) -> NearPairs:
         if self._gapless:
-            return found._replace(pairs=require_pairs(self._backend.name, found.pairs, self._count))
-        return require_gaps(self._backend.name, found, self._count, self._within)
+            found = found._replace(pairs=require_pairs(self._backend.name, found.pairs, self._count))
+        else:
+            found = require_gaps(self._backend.name, found, self._count, self._within)
+        if not len(self._ignored):
+            return found
+        kept = kept_of(found.pairs, self._ignored)
+        return NearPairs(found.pairs[kept], found.gaps[kept], None if found.points is None else found.points[kept])
 
 
 class NativeImpacts:
@@ -58,7 +65,7 @@ class NativeImpacts:
     """
 
     def __init__(self, backend: Impacts, scene: Scene) -> None:
-        self._backend, self._count = backend, len(scene.bodies)
+        self._backend, self._count, self._ignored = backend, len(scene.bodies), scene.ignored
         self._room = scene.box.half - scene.bodies.radii[:, None]
 
     @property
@@ -97,7 +104,11 @@ class NativeImpacts:
         found = self._backend.impacts(
             read_only(positions), read_only(quaternions), read_only(velocities), read_only(spins), wait
         )
-        return require_impacts(self._backend.name, found, self._count, wait)
+        found = require_impacts(self._backend.name, found, self._count, wait)
+        if not len(self._ignored):
+            return found
+        kept = kept_of(found.pairs, self._ignored)
+        return ImpactTimes(found.pairs[kept], found.times[kept])
 
     def _until_walls(self, positions: Floats, velocities: Floats) -> Floats:
         """(n, 3) s: until each body is turned on each axis; inf where it does not move."""

@@ -10,7 +10,7 @@ import numpy as np
 from harness.arrays import Flags, Floats, Pairs
 from harness.backends.protocol import NearPairs
 from harness.broadphase.pairs import BroadPhase
-from harness.methods.narrow_phase import hull_of_size_1
+from harness.methods.narrow_phase import hulls_of_size_1
 from harness.narrowphase.gap import Accuracy
 from harness.narrowphase.gap_pairs import HullGapPairs, MeshGapPairs
 from harness.narrowphase.placement import Places
@@ -94,11 +94,15 @@ class GapSearch(Protocol):
 
 def gap_search(scene: Scene) -> GapSearch:
     """What measures the gaps of the bodies of a scene, frame after frame."""
-    if scene.shape == "sphere" or scene.mesh is None:
+    if scene.shape == "sphere":
         spheres = SphereGapPairs(scene.bodies.radii)
         return lambda pairs, positions, quaternions, accuracy: spheres.gaps(pairs, positions, accuracy.limit)
     places = Places(scene.bodies.sizes)
-    solids = HullGapPairs(hull_of_size_1(scene)) if scene.shape == "hull" else MeshGapPairs(scene.mesh)
+    solids: HullGapPairs | MeshGapPairs = (
+        HullGapPairs(hulls_of_size_1(scene), scene.mesh_of)
+        if scene.shape == "hull"
+        else MeshGapPairs(scene.meshes, scene.mesh_of)
+    )
 
     def search(pairs: Pairs, positions: Floats, quaternions: Floats, accuracy: Accuracy) -> Gaps:
         placement = places.at(positions, quaternions)

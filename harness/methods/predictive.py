@@ -22,7 +22,7 @@ from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.penetration import Penetration
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepped import decide_penetration, decide_recording
-from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, of_meshes, two_bodies
 from harness.motion.course import Course, CourseLog
 from harness.motion.finite import require_finite_state
 from harness.motion.hit_states import states_of_events
@@ -73,9 +73,9 @@ class Predictive(Method):
     def load(self, scene: Scene, plan: Plan) -> Pipeline:
         return EventDriven(scene, plan, self.tolerance)
 
-    def warm_ups(self) -> Iterator[WarmUp]:
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         shape: Shape = self.name.shape
-        yield f"events of {shape}s", partial(_fly_events, shape)
+        yield f"events of {shape}s{of_meshes(meshes)}", partial(_fly_events, shape, meshes)
 
 
 def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
@@ -101,7 +101,7 @@ def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
     elif needs_its_surface(scene):
         take("mesh_search", True, "surfaces are advanced to their contact when their hulls meet, not before")
     else:
-        take("mesh_search", False, "the mesh is convex, its own hull, and no body can be inside an equal one")
+        take("mesh_search", False, "every mesh is convex, its own hull, and no body can be inside an equal one")
 
 
 def _lasting_contacts(law: MotionLaw, decisions: Decisions) -> None:
@@ -293,9 +293,9 @@ def _course(scene: Scene, trace: Trace) -> Course | None:
     return log.course()
 
 
-def _fly_events(shape: Shape) -> None:
+def _fly_events(shape: Shape, meshes: int) -> None:
     """A flight from event to event with every response, from cells and from lists."""
-    scene, duration = two_bodies(shape), 0.3
+    scene, duration = two_bodies(shape, meshes), 0.3
     stages = Decisions()
     for name in ("pairs", "orientations", "hull_search"):
         stages.take(name, name == "pairs" or shape != "sphere", "")

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 from harness.arrays import Floats, Pairs
 from harness.broadphase.all_pairs import AllPairs
+from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
 from harness.methods.asking import ImpactAsking, NearAsking
 from harness.methods.impact_times import ImpactFinder, KernelImpacts
@@ -20,7 +21,7 @@ from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.near_pairs import KernelNearPairs, NearFinder, near_radii
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepping import Detector, Stepping
-from harness.methods.warm_up_scene import RESPONSES, TOUCHING, two_bodies
+from harness.methods.warm_up_scene import RESPONSES, TOUCHING, of_meshes, two_bodies
 from harness.motion.law import MotionLaw
 from harness.motion.reach import all_at_rest, no_pair_can_meet, walls_are_out_of_reach
 from harness.scene.scene import Scene
@@ -72,12 +73,16 @@ class SteppedMethod(Method):
             If the library that it stands on is missing, or cannot hold the scene, or has no such query.
         """
         within, query = self.within or 0.0, self.name.query
-        close_pairs = self.close_pairs_of(scene, plan, near_radii(scene, within))
+        close_pairs = asked_about(self.close_pairs_of(scene, plan, near_radii(scene, within)), scene.ignored)
         return KernelNearPairs(scene, close_pairs, query, within, self.tolerance)
 
     def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:
         """What finds impacts, loaded with the scene; raises as `near_finder` does."""
-        return KernelImpacts(scene, partial(self.close_pairs_of, scene, plan), self.tolerance)
+
+        def make(radii: Floats) -> BroadPhase:
+            return asked_about(self.close_pairs_of(scene, plan, radii), scene.ignored)
+
+        return KernelImpacts(scene, make, self.tolerance)
 
     def decide_detection(self, scene: Scene, decisions: Decisions) -> None:
         """Decide on the stages of detection; without any, nothing of it is known."""
@@ -119,12 +124,13 @@ class SteppedMethod(Method):
             return ImpactAsking(scene, plan, self.impact_finder(scene, plan) if pairs else None)
         return Stepping(scene, plan, self.detector(scene, plan) if pairs else None)
 
-    def warm_ups(self) -> Iterator[WarmUp]:
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         if self.name.query != "collision":
-            yield f"{self.name.query} of {self.name.shape}s by {self.name.algorithm}", partial(_ask_frames, self)
+            what = f"{self.name.query} of {self.name.shape}s by {self.name.algorithm}{of_meshes(meshes)}"
+            yield what, partial(_ask_frames, self, meshes)
             return
         shape: Shape = "sphere" if self.name.shape == "sphere" else "hull"
-        yield f"frames of {shape}s", partial(_fly_frames, shape)
+        yield f"frames of {shape}s{of_meshes(meshes)}", partial(_fly_frames, shape, meshes)
 
     def _motion(self, scene: Scene, decisions: Decisions) -> None:
         if not all_at_rest(scene):
@@ -237,9 +243,9 @@ def _response(law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
         decisions.take("response", True, why, fixed="hits would not be answered; choose response none for that")
 
 
-def _ask_frames(method: SteppedMethod) -> None:
+def _ask_frames(method: SteppedMethod, meshes: int) -> None:
     """Two frames of two bodies that meet, by the method as it is."""
-    scene, dt = two_bodies(method.name.shape), 0.3
+    scene, dt = two_bodies(method.name.shape, meshes), 0.3
     law = MotionLaw(2 * dt, dt, "none")
     method.load(scene, method.plan(scene, law)).fly(law, traced=True)
 
@@ -251,9 +257,9 @@ class _AlwaysTouching:
         return TOUCHING
 
 
-def _fly_frames(shape: Shape) -> None:
+def _fly_frames(shape: Shape, meshes: int) -> None:
     """Two frames with every response; every stage that a detector is not asked for is kept."""
-    scene, dt = two_bodies(shape), 0.3
+    scene, dt = two_bodies(shape, meshes), 0.3
     for response in RESPONSES:
         law = MotionLaw(2 * dt, dt, response)
         decisions = Decisions()

@@ -26,6 +26,7 @@ from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.motion.response import CollisionResponse
+from harness.narrowphase.body_shapes import hulls_of_bodies
 from harness.narrowphase.support import support_map
 from harness.narrowphase.walls import hulls_at_walls, spheres_at_walls
 from harness.scene.scene import Scene
@@ -272,17 +273,18 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Trajectory], Flags]:
     """The test of all bodies against the six walls that the scene needs; its answer is overwritten by the next."""
     touching = np.zeros((len(scene.bodies), 6), np.bool_)
     half, sizes, radii = scene.box.half, scene.bodies.sizes, scene.bodies.radii
-    if scene.shape == "sphere" or scene.mesh is None:
+    if scene.shape == "sphere":
 
         def spheres(trajectory: Trajectory) -> Flags:
             spheres_at_walls(trajectory.positions, radii, half, touching)
             return touching
 
         return spheres
-    hull, cull = support_map(scene.mesh.hull.vertices), plan.keeps("wall_cull")
+    maps = [support_map(mesh.hull.vertices) for mesh in scene.meshes]
+    of_bodies, cull = hulls_of_bodies(maps, scene.mesh_of), plan.keeps("wall_cull")
 
     def hulls(trajectory: Trajectory) -> Flags:
-        hulls_at_walls(trajectory.positions, trajectory.quaternions, sizes, hull, half, cull, touching)
+        hulls_at_walls(trajectory.positions, trajectory.quaternions, sizes, of_bodies, half, cull, touching)
         return touching
 
     return hulls

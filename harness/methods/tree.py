@@ -42,9 +42,9 @@ class Tree(Culled):
 
         return FclTree(scene, radii)
 
-    def warm_ups(self) -> Iterator[WarmUp]:
+    def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         # kernels of the other stages are called only where they are forced on
-        return super().warm_ups() if self.forced else SteppedMethod.warm_ups(self)
+        return super().warm_ups(meshes) if self.forced else SteppedMethod.warm_ups(self, meshes)
 
 
 METHOD = Tree

@@ -29,8 +29,19 @@ def tetrahedron() -> Mesh:
     return Mesh("tetrahedron", hull.vertices, hull.faces, hull, "", watertight=True, convex=True)
 
 
-def two_bodies(shape: Shape) -> Scene:
-    """Two bodies of a shape, of size 1 m, that spin and fly towards each other."""
+def of_meshes(meshes: int) -> str:
+    """What sets the name of a warm-up of a scene of several meshes apart."""
+    return " of several meshes" if meshes > 1 else ""
+
+
+def two_bodies(shape: Shape, meshes: int = 1) -> Scene:
+    """Two bodies of a shape, of size 1 m, that spin and fly towards each other; each of a mesh of its own if several.
+
+    Parameters
+    ----------
+    shape : Shape
+    meshes : how many meshes the scene has that is warmed up for, of which only 1 differs from all others
+    """
     bodies = Bodies(
         positions=np.array([[-0.6, 0, 0], [0.6, 0, 0]]),
         velocities=np.array([[1.0, 1, 1], [-1, -1, -1]]),
@@ -39,4 +50,6 @@ def two_bodies(shape: Shape) -> Scene:
         sizes=np.ones(2),
         masses=np.ones(2),
     )
-    return Scene(shape, tetrahedron(), bodies, Box(np.full(3, 1.2)))
+    several = meshes > 1 and shape != "sphere"
+    made, mesh_of = ((tetrahedron(),) * 2, [0, 1]) if several else ((tetrahedron(),), [0, 0])
+    return Scene(shape, made, bodies, Box(np.full(3, 1.2)), mesh_of=np.array(mesh_of))

@@ -3,11 +3,12 @@ surface. Such pairs are counted apart."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, pi, sqrt
 
 import numpy as np
 
-from harness.arrays import Floats, Pairs
+from harness.arrays import Floats, Ints, Pairs
 from harness.kernel import kernel
 from harness.narrowphase.placement import Placement, pose_of
 from harness.narrowphase.vectors import Vector, cross, dot, minus, plus, scaled, turned
@@ -15,33 +16,39 @@ from harness.scene.mesh import Mesh
 
 
 class Containment:
-    """Finds the contained among pairs of bodies that have the same surface in different sizes.
+    """Finds the contained among pairs of bodies of different sizes.
 
     Parameters
     ----------
-    mesh : Mesh
+    meshes : that there are
+    mesh_of : (n,) int array, the number of each body's mesh
     """
 
-    def __init__(self, mesh: Mesh) -> None:
-        from scipy.sparse import coo_array  # only runs with meshes of different sizes need it
-        from scipy.sparse.csgraph import connected_components
-
-        faces = mesh.faces
-        ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
-        graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(mesh.vertices),) * 2)
-        _, piece = connected_components(graph, directed=False)
-        # a piece of a surface that touches nothing is inside if one of its points is
-        self._witnesses = mesh.vertices[np.unique(piece, return_index=True)[1]]
-        self._corners = np.ascontiguousarray(mesh.vertices[faces])
+    def __init__(self, meshes: Sequence[Mesh], mesh_of: Ints) -> None:
+        self._witnesses = [_witnesses(mesh) for mesh in meshes]
+        self._corners = [np.ascontiguousarray(mesh.vertices[mesh.faces]) for mesh in meshes]
+        self._mesh_of = mesh_of.tolist()
 
     def contained(self, pairs: Pairs, placement: Placement) -> Pairs:
         """Those of the pairs, (k, 2), none of which touch, in which one body is wholly inside the other."""
         sizes = placement.sizes
-        inside = [
-            inside_of(placement, *((i, j) if sizes[i] > sizes[j] else (j, i)), self._witnesses, self._corners)
-            for i, j in pairs.tolist()
-        ]
+        inside = [self._inside(placement, *((i, j) if sizes[i] > sizes[j] else (j, i))) for i, j in pairs.tolist()]
         return pairs[np.array(inside, np.bool_)]
+
+    def _inside(self, placement: Placement, outer: int, inner: int) -> bool:
+        witnesses, corners = self._witnesses[self._mesh_of[inner]], self._corners[self._mesh_of[outer]]
+        return inside_of(placement, outer, inner, witnesses, corners)
+
+
+def _witnesses(mesh: Mesh) -> Floats:
+    """A point of each piece of a surface: a piece that touches nothing is inside if one of its points is."""
+    from scipy.sparse import coo_array  # only runs with meshes of different sizes need it
+    from scipy.sparse.csgraph import connected_components
+
+    ends = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
+    graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(mesh.vertices),) * 2)
+    _, piece = connected_components(graph, directed=False)
+    return mesh.vertices[np.unique(piece, return_index=True)[1]]
 
 
 @kernel

@@ -6,18 +6,21 @@ surfaces. They are only guesses at where to look: the gap is proved anew from th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from harness.arrays import Ints, Pairs
 from harness.kernel import kernel, strict_step
-from harness.narrowphase.gap import Accuracy, Gap, MeshGapShape, hull_gap, mesh_gap, mesh_gap_shape
+from harness.narrowphase.body_shapes import Hulls, hull_of, hulls_of_bodies
+from harness.narrowphase.gap import Accuracy, Gap, hull_gap, mesh_gap, mesh_gap_shape
+from harness.narrowphase.gap_shapes import GapShapes, gap_shape_of, gap_shapes_of_bodies
 from harness.narrowphase.gjk import COLD_START, WarmStart
 from harness.narrowphase.mesh_advancement import MeshWarmStart
 from harness.narrowphase.placement import Placement, pose_of, rotation_of
 from harness.narrowphase.pose_gaps import Gaps
-from harness.narrowphase.support import SupportMap, support_map
+from harness.narrowphase.support import support_map
 from harness.narrowphase.surface_gap import SearchRoom, search_room
 from harness.narrowphase.tree_pairs import NO_NODES, NodePair
 from harness.narrowphase.vectors import scaled, turned
@@ -41,15 +44,16 @@ class GapMemory(NamedTuple):
 
 
 class HullGapPairs:
-    """Gaps of pairs of bodies that have the same hull, in any sizes.
+    """Gaps of pairs of bodies that have these hulls, in any sizes.
 
     Parameters
     ----------
-    hull : Hull of diameter 1
+    hulls : of diameter 1, of each mesh
+    mesh_of : (n,) int array, the number of each body's mesh
     """
 
-    def __init__(self, hull: Hull) -> None:
-        self._hull = support_map(hull.vertices)
+    def __init__(self, hulls: Sequence[Hull], mesh_of: Ints) -> None:
+        self._hulls = hulls_of_bodies([support_map(hull.vertices) for hull in hulls], mesh_of)
         self._last = gap_memory(0)
 
     def gaps(self, pairs: Pairs, placement: Placement, accuracy: Accuracy) -> Gaps:
@@ -62,27 +66,28 @@ class HullGapPairs:
         accuracy : Accuracy, in the units of the placement
         """
         now, found = gap_memory(len(pairs)), gaps_of(len(pairs))
-        hull_pair_gaps(pairs, placement, accuracy, self._hull, self._last, now, found)
+        hull_pair_gaps(pairs, placement, accuracy, self._hulls, self._last, now, found)
         self._last = now
         return found
 
 
 class MeshGapPairs:
-    """Gaps of pairs of bodies that have the same surface, in any sizes.
+    """Gaps of pairs of bodies that have these surfaces, in any sizes.
 
     Parameters
     ----------
-    mesh : Mesh
+    meshes : that there are
+    mesh_of : (n,) int array, the number of each body's mesh
     """
 
-    def __init__(self, mesh: Mesh) -> None:
-        self._shape = mesh_gap_shape(mesh)
+    def __init__(self, meshes: Sequence[Mesh], mesh_of: Ints) -> None:
+        self._shapes = gap_shapes_of_bodies([mesh_gap_shape(mesh) for mesh in meshes], mesh_of)
         self._last, self._room = gap_memory(0), search_room()
 
     def gaps(self, pairs: Pairs, placement: Placement, accuracy: Accuracy) -> Gaps:
         """The gaps of the pairs of a frame; parameters and answer as for `HullGapPairs.gaps`."""
         now, found = gap_memory(len(pairs)), gaps_of(len(pairs))
-        mesh_pair_gaps(pairs, placement, accuracy, self._shape, self._room, self._last, now, found)
+        mesh_pair_gaps(pairs, placement, accuracy, self._shapes, self._room, self._last, now, found)
         self._last = now
         return found
 
@@ -102,7 +107,7 @@ def hull_pair_gaps(
     pairs: Pairs,
     placement: Placement,
     accuracy: Accuracy,
-    hull: SupportMap,
+    hulls: Hulls,
     last: GapMemory,
     now: GapMemory,
     found: Gaps,
@@ -114,7 +119,7 @@ def hull_pair_gaps(
         place = remembered(last, place, i << 32 | j)
         pose = pose_of(placement, i, j)
         start = simplex_of(last, place, i << 32 | j)
-        gap, _, start = hull_gap(hull, hull, pose, start, scaled(pose.offset, -1.0), accuracy)
+        gap, _, start = hull_gap(hull_of(hulls, i), hull_of(hulls, j), pose, start, scaled(pose.offset, -1.0), accuracy)
         remember(now, k, i << 32 | j, start, NO_NODES)
         write_gap(found, k, gap, placement, i)
 
@@ -124,7 +129,7 @@ def mesh_pair_gaps(
     pairs: Pairs,
     placement: Placement,
     accuracy: Accuracy,
-    shape: MeshGapShape,
+    shapes: GapShapes,
     room: SearchRoom,
     last: GapMemory,
     now: GapMemory,
@@ -139,7 +144,8 @@ def mesh_pair_gaps(
         if place < len(last.keys) and last.keys[place] == i << 32 | j:
             leaves = NodePair(last.leaves[place, 0], last.leaves[place, 1])
         start = MeshWarmStart(simplex_of(last, place, i << 32 | j), leaves)
-        gap, start = mesh_gap(shape, shape, pose_of(placement, i, j), start, accuracy, room)
+        one, other = gap_shape_of(shapes, i), gap_shape_of(shapes, j)
+        gap, start = mesh_gap(one, other, pose_of(placement, i, j), start, accuracy, room)
         remember(now, k, i << 32 | j, start.hulls, start.leaves)
         write_gap(found, k, gap, placement, i)
 

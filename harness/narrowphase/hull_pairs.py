@@ -7,16 +7,18 @@ what is remembered changes the time and never the answer.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from harness.arrays import Floats, Ints, Pairs
 from harness.kernel import kernel
+from harness.narrowphase.body_shapes import Hulls, hull_of, hulls_of_bodies
 from harness.narrowphase.gjk import COLD_START, hull_distance
 from harness.narrowphase.placement import Placement, offset_of, pose_of, rotation_of
 from harness.narrowphase.separating_axis import gap_along
-from harness.narrowphase.support import SupportMap, support_map
+from harness.narrowphase.support import support_map
 from harness.narrowphase.vectors import scaled, turned
 from harness.narrowphase.verdicts import PairVerdict, PairVerdicts
 from harness.scene.hull import Hull
@@ -38,11 +40,12 @@ class Memory(NamedTuple):
 
 
 class HullPairs:
-    """Verdicts on pairs of bodies that have the same hull, in any sizes.
+    """Verdicts on pairs of bodies that have these hulls, in any sizes.
 
     Parameters
     ----------
-    hull : Hull of diameter 1
+    hulls : of diameter 1, of each mesh
+    mesh_of : (n,) int array, the number of each body's mesh
     margin : gap or overlap that a certificate must show, of the sum of the sizes
 
     Attributes
@@ -50,10 +53,10 @@ class HullPairs:
     searches : pairs so far that the axis of the last frame did not settle
     """
 
-    def __init__(self, hull: Hull, margin: float) -> None:
+    def __init__(self, hulls: Sequence[Hull], mesh_of: Ints, margin: float) -> None:
         self.searches = 0
         self._margin = margin
-        self._hull = support_map(hull.vertices)
+        self._hulls = hulls_of_bodies([support_map(hull.vertices) for hull in hulls], mesh_of)
         self._last, self._now, self._remembered = memory(64), memory(64), 0
         self._verdicts: PairVerdicts = np.empty(64, np.int8)
 
@@ -82,7 +85,7 @@ class HullPairs:
         elif len(self._now.keys) < count:
             self._now = memory(len(self._verdicts))
         overlapping, undecided, searches = settle(
-            pairs, placement, self._margin, self._hull, self._last, self._remembered, self._now, self._verdicts
+            pairs, placement, self._margin, self._hulls, self._last, self._remembered, self._now, self._verdicts
         )
         self._last, self._now, self._remembered = self._now, self._last, count
         self.searches += searches
@@ -99,7 +102,7 @@ def settle(
     pairs: Pairs,
     placement: Placement,
     margin: float,
-    hull: SupportMap,
+    hulls: Hulls,
     last: Memory,
     remembered: int,
     now: Memory,
@@ -109,7 +112,7 @@ def settle(
 
     Parameters
     ----------
-    pairs, placement, margin : as `HullPairs` has them
+    pairs, placement, margin, hulls : as `HullPairs` has them
     last : the Memory of `remembered` pairs
     now : written: the Memory of these pairs
     verdicts : (k,) written
@@ -136,11 +139,12 @@ def settle(
         size_i, size_j = placement.sizes[i], placement.sizes[j]
         needed = margin * (size_i + size_j)
         verdict = PairVerdict.UNDECIDED
-        if start[0] < 0 and gap_along(hull, axis, rotation_i, size_i, rotation_j, size_j, offset) > needed:
+        a, b = hull_of(hulls, i), hull_of(hulls, j)
+        if start[0] < 0 and gap_along(a, b, axis, rotation_i, size_i, rotation_j, size_j, offset) > needed:
             verdict = PairVerdict.SEPARATE
         else:
             searches += 1
-            found = hull_distance(hull, hull, pose_of(placement, i, j), start, axis, needed, needed, 0.0)
+            found = hull_distance(a, b, pose_of(placement, i, j), start, axis, needed, needed, 0.0)
             verdict, axis = found.verdict, turned(rotation_i, found.axis)
             start = found.warm_start if verdict == PairVerdict.TOUCHING else COLD_START
         now.keys[k], verdicts[k] = key, verdict

@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.kernel import inner, kernel
+from harness.narrowphase.body_shapes import Hulls, Shapes, hull_of, shape_of
 from harness.narrowphase.contact_end import ContactEnd, LastCrossing, end_of_hull_contact, followed_mesh_contact
 from harness.narrowphase.contact_intervals import Onset, next_mesh_contact
 from harness.narrowphase.frame_flights import (
@@ -43,6 +44,7 @@ from harness.narrowphase.tree_pairs import DEPTH, ROOTS
 from harness.narrowphase.vectors import dot, minus
 from harness.narrowphase.verdicts import SearchVerdict
 
+Solids = TypeVar("Solids")
 Shape = TypeVar("Shape")
 
 # By how much the tolerance of a search that was given up is raised before it is done again, and how many are done.
@@ -92,6 +94,14 @@ class Count(NamedTuple):
     given_up: int
 
 
+class Place(NamedTuple):
+    """Pair k of those asked about, of bodies i and j."""
+
+    k: int
+    i: int
+    j: int
+
+
 class Piece(NamedTuple):
     """A straight piece of a pair's way.
 
@@ -132,26 +142,26 @@ def sphere_pair_onsets(asked: PairsAsked, flights: FrameFlights, found: Onsets) 
 
 
 @kernel
-def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hull: SupportMap, found: Onsets) -> Count:
-    """All onsets of bodies that have the same hull."""
-    return pair_onsets(asked, flights, hull, found, hulls_in_piece)
+def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hulls: Hulls, found: Onsets) -> Count:
+    """All onsets of bodies that have these hulls."""
+    return pair_onsets(asked, flights, hulls, found, hulls_in_piece)
 
 
 @kernel
-def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shape: MeshShape, found: Onsets) -> Count:
-    """All onsets of bodies that have the same surface."""
-    return pair_onsets(asked, flights, shape, found, surfaces_in_piece)
+def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shapes: Shapes, found: Onsets) -> Count:
+    """All onsets of bodies that have these surfaces."""
+    return pair_onsets(asked, flights, shapes, found, surfaces_in_piece)
 
 
 @inner
 def pair_onsets(
     asked: PairsAsked,
     flights: FrameFlights,
-    shape: Shape,
+    solids: Solids,
     found: Onsets,
-    in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+    in_piece: Callable[[Solids, Place, Motion, Motion, Piece, Followed, Onsets], Followed],
 ) -> Count:
-    """The onsets of all pairs, in order, given what follows a pair through a straight piece."""
+    """The onsets of all pairs, in order, given what follows a pair of the solids through a straight piece."""
     count, given_up, place = 0, 0, 0
     pair = pair_flight()
     for k in range(len(asked.pairs)):
@@ -173,7 +183,9 @@ def pair_onsets(
             a, b = motion_in(flights, i, pair, 0, now), motion_in(flights, j, pair, 1, now)
             tolerance = asked.tolerance * 0.5 * (a.size + b.size)
             piece = Piece(now, wait, straight, tolerance, asked.first and now == 0.0)
-            followed = again_if_unknown(shape, a, b, piece, Followed(state, count, True), k, found, in_piece)
+            followed = again_if_unknown(
+                solids, Place(k, i, j), a, b, piece, Followed(state, count, True), found, in_piece
+            )
             state, count = followed.state, followed.onsets
             given_up += not followed.known
             if now + wait >= flights.duration:
@@ -187,14 +199,14 @@ def pair_onsets(
 
 @inner
 def again_if_unknown(
-    shape: Shape,
+    solids: Solids,
+    place: Place,
     a: Motion,
     b: Motion,
     piece: Piece,
     before: Followed,
-    k: int,
     found: Onsets,
-    in_piece: Callable[[Shape, Motion, Motion, Piece, Followed, int, Onsets], Followed],
+    in_piece: Callable[[Solids, Place, Motion, Motion, Piece, Followed, Onsets], Followed],
 ) -> Followed:
     """A pair through a piece, and on from where a search is given up at a larger tolerance.
 
@@ -204,7 +216,7 @@ def again_if_unknown(
     """
     after = before
     for _ in range(MOST_SEARCHES):
-        after = in_piece(shape, a, b, piece, after, k, found)
+        after = in_piece(solids, place, a, b, piece, after, found)
         if after.known:
             break
         piece = Piece(piece.begin, piece.length, piece.straight, COARSER * piece.tolerance, piece.settled)
@@ -213,7 +225,7 @@ def again_if_unknown(
 
 @kernel
 def spheres_in_piece(
-    nothing: int, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    nothing: int, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Spheres touch once in a straight piece, from a root of a quadratic to the next."""
     gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
@@ -224,24 +236,26 @@ def spheres_in_piece(
     # what touches at the start has been noted, unless rounding has put its beginning off until now: then it approaches
     begins = met.enter > 0.0 or (not piece.settled and dot(gap, drift) < 0.0)
     if begins and not before.state.touches:
-        count = noted(found, count, k, piece.begin + max(met.enter, 0.0))
+        count = noted(found, count, place.k, piece.begin + max(met.enter, 0.0))
     return Followed(PairState(met.leave >= piece.length, 0.0, False, ROOTS, 0.0, 0), count, True)
 
 
 @kernel
 def hulls_in_piece(
-    hull: SupportMap, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    hulls: Hulls, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Hulls, from contact to contact."""
-    return solids_in_piece(hull, a, b, piece, before, k, found, next_hull_contact, followed_hulls)
+    solids = hull_of(hulls, place.i), hull_of(hulls, place.j)
+    return solids_in_piece(solids, place.k, a, b, piece, before, found, next_hull_contact, followed_hulls)
 
 
 @kernel
 def surfaces_in_piece(
-    shape: MeshShape, a: Motion, b: Motion, piece: Piece, before: Followed, k: int, found: Onsets
+    shapes: Shapes, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Surfaces, from contact to contact."""
-    return solids_in_piece(shape, a, b, piece, before, k, found, next_mesh_contact, followed_surfaces)
+    solids = shape_of(shapes, place.i), shape_of(shapes, place.j)
+    return solids_in_piece(solids, place.k, a, b, piece, before, found, next_mesh_contact, followed_surfaces)
 
 
 @kernel
@@ -255,39 +269,40 @@ def next_hull_contact(
 
 @inner
 def followed_hulls(
-    hull: SupportMap, a: Motion, b: Motion, state: PairState, end: float, tolerance: float
+    one: SupportMap, other: SupportMap, a: Motion, b: Motion, state: PairState, end: float, tolerance: float
 ) -> tuple[ContactEnd, PairState]:
     """Hulls that touch, followed on from until when that is known."""
-    return end_of_hull_contact(hull, hull, a, b, state.until, end, tolerance), state
+    return end_of_hull_contact(one, other, a, b, state.until, end, tolerance), state
 
 
 @inner
 def followed_surfaces(
-    shape: MeshShape, a: Motion, b: Motion, state: PairState, end: float, tolerance: float
+    one: MeshShape, other: MeshShape, a: Motion, b: Motion, state: PairState, end: float, tolerance: float
 ) -> tuple[ContactEnd, PairState]:
     """Surfaces that touch, followed on from until when that is known, and where they crossed then."""
     last = LastCrossing(state.leaves, state.enough, state.instants, np.empty((DEPTH, 2), np.int64))
-    ending, last = followed_mesh_contact(shape, shape, a, b, state.until, end, tolerance, last)
+    ending, last = followed_mesh_contact(one, other, a, b, state.until, end, tolerance, last)
     return ending, PairState(True, state.until, False, last.leaves, last.enough, last.instants)
 
 
 @inner
 def solids_in_piece(
-    shape: Shape,
+    solids: tuple[Shape, Shape],
+    k: int,
     a: Motion,
     b: Motion,
     piece: Piece,
     before: Followed,
-    k: int,
     found: Onsets,
     next_contact: Callable[[Shape, Shape, Motion, Motion, float, float, float], Onset],
-    end_of_contact: Callable[[Shape, Motion, Motion, PairState, float, float], tuple[ContactEnd, PairState]],
+    end_of_contact: Callable[[Shape, Shape, Motion, Motion, PairState, float, float], tuple[ContactEnd, PairState]],
 ) -> Followed:
     """From contact to contact, given what finds the next one and what follows it to its end."""
+    one, other = solids
     state, count, parted, resumed = before.state, before.onsets, -1.0, 0
     while state.until < piece.length or (state.onset and state.until <= piece.length):
         if state.touches:
-            ending, state = end_of_contact(shape, a, b, state, piece.length, piece.tolerance)
+            ending, state = end_of_contact(one, other, a, b, state, piece.length, piece.tolerance)
             goes_on = ending.verdict != SearchVerdict.FOUND
             holds = min(ending.holds, max(piece.length, piece.straight))
             state = PairState(goes_on, holds, False, state.leaves, state.enough, state.instants)
@@ -296,7 +311,7 @@ def solids_in_piece(
             parted = holds
             continue
         if not state.onset:
-            onset = next_contact(shape, shape, a, b, state.until, piece.straight, piece.tolerance)
+            onset = next_contact(one, other, a, b, state.until, piece.straight, piece.tolerance)
             begins = onset.verdict == SearchVerdict.FOUND
             if onset.verdict == SearchVerdict.STALLED and onset.time < piece.length:
                 nearer, resumed = onset.time > state.until, resumed + 1

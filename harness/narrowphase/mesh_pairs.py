@@ -5,12 +5,14 @@ The search starts around the triangles that crossed in the last frame, and from 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from harness.arrays import Ints, Pairs
 from harness.kernel import kernel
+from harness.narrowphase.body_shapes import Surfaces, tree_of, trees_of_bodies
 from harness.narrowphase.crossing import find_crossing
 from harness.narrowphase.gjk import MARGIN
 from harness.narrowphase.placement import Placement, pose_of
@@ -40,16 +42,16 @@ class Crossings(NamedTuple):
 
 
 class MeshPairs:
-    """Verdicts on pairs of bodies with the same surface, in any sizes.
+    """Verdicts on pairs of bodies with these surfaces, in any sizes.
 
     Parameters
     ----------
-    mesh : Mesh
+    meshes : that there are
+    mesh_of : (n,) int array, the number of each body's mesh
     """
 
-    def __init__(self, mesh: Mesh) -> None:
-        tree = triangle_tree(mesh.vertices, mesh.faces)
-        self._trees = Trees(tree, tree)
+    def __init__(self, meshes: Sequence[Mesh], mesh_of: Ints) -> None:
+        self._trees = trees_of_bodies([triangle_tree(mesh.vertices, mesh.faces) for mesh in meshes], mesh_of)
         self._stack = np.empty((DEPTH, 2), np.int64)
         self._last, self._now, self._remembered = crossings(0), crossings(0), 0
 
@@ -79,7 +81,7 @@ def crossings(room: int) -> Crossings:
 def settle(
     pairs: Pairs,
     placement: Placement,
-    trees: Trees,
+    surfaces: Surfaces,
     stack: Ints,
     last: Crossings,
     now: Crossings,
@@ -90,7 +92,7 @@ def settle(
     Parameters
     ----------
     pairs, placement : as `MeshPairs.settle` has them
-    trees : Trees, twice the same
+    surfaces : of the bodies
     stack : (DEPTH, 2) written
     last : Crossings of the last frame
     now : the same of this frame, written
@@ -104,7 +106,7 @@ def settle(
     for k in range(len(pairs)):
         i, j = pairs[k, 0], pairs[k, 1]
         key = i << 32 | j
-        pose = pose_of(placement, i, j)
+        pose, trees = pose_of(placement, i, j), Trees(tree_of(surfaces, i), tree_of(surfaces, j))
         margin = MARGIN * (pose.size_a + pose.size_b)
         while place < len(last.keys) and last.keys[place] < key:
             place += 1

@@ -14,7 +14,8 @@ from harness.narrowphase.vectors import Matrix, Vector, dot, turned_back
 
 @strict_step
 def gap_along(
-    hull: SupportMap,
+    hull_a: SupportMap,
+    hull_b: SupportMap,
     axis: Vector,
     rotation_a: Matrix,
     size_a: float,
@@ -26,7 +27,7 @@ def gap_along(
 
     Parameters
     ----------
-    hull : SupportMap of both bodies
+    hull_a, hull_b : SupportMap
     axis : in the world, from b to a, of any length; zero proves nothing
     rotation_a, rotation_b : from the axes of the bodies to those of the world
     size_a, size_b : factors on the hull's vertices
@@ -42,9 +43,9 @@ def gap_along(
     if not squared > 0.0:
         return -np.inf
     seen_by_a, seen_by_b = turned_back(rotation_a, axis), turned_back(rotation_b, axis)
-    a = support(hull, -seen_by_a[0], -seen_by_a[1], -seen_by_a[2])
-    b = support(hull, seen_by_b[0], seen_by_b[1], seen_by_b[2])
-    vertex_a = hull.vertices[a, 0], hull.vertices[a, 1], hull.vertices[a, 2]
-    vertex_b = hull.vertices[b, 0], hull.vertices[b, 1], hull.vertices[b, 2]
+    a = support(hull_a, -seen_by_a[0], -seen_by_a[1], -seen_by_a[2])
+    b = support(hull_b, seen_by_b[0], seen_by_b[1], seen_by_b[2])
+    vertex_a = hull_a.vertices[a, 0], hull_a.vertices[a, 1], hull_a.vertices[a, 2]
+    vertex_b = hull_b.vertices[b, 0], hull_b.vertices[b, 1], hull_b.vertices[b, 2]
     gap = size_a * dot(seen_by_a, vertex_a) - size_b * dot(seen_by_b, vertex_b) - dot(axis, offset)
     return gap / sqrt(squared)

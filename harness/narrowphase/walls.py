@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from harness.arrays import Flags, Floats
 from harness.kernel import kernel
-from harness.narrowphase.support import SupportMap, support
+from harness.narrowphase.body_shapes import Hulls, hull_of
+from harness.narrowphase.support import support
 from harness.narrowphase.vectors import dot, rotation, scaled
 
 
@@ -36,7 +37,7 @@ def hulls_at_walls(
     positions: Floats,
     quaternions: Floats,
     sizes: Floats,
-    hull: SupportMap,
+    hulls: Hulls,
     half: Floats,
     cull: bool,
     touching: Flags,
@@ -48,9 +49,9 @@ def hulls_at_walls(
     positions : (n, 3) float array, m
     quaternions : (n, 4) float array, w x y z
     sizes : (n,) float array, m
-        Diameters of the bounding spheres; the hull itself has diameter 1.
-    hull : SupportMap
-        Of a hull centred on its bounding sphere.
+        Diameters of the bounding spheres; the hulls themselves have diameter 1.
+    hulls : SupportMap or SupportMaps
+        Of hulls centred on their bounding spheres.
     half : (3,) float array, m
     cull : bool
         Put a hull only to the walls that its bounding sphere reaches. The answer is the same.
@@ -77,6 +78,7 @@ def hulls_at_walls(
                 matrix = rotation(quaternions[i, 0], quaternions[i, 1], quaternions[i, 2], quaternions[i, 3])
             row = matrix[0] if axis == 0 else (matrix[1] if axis == 1 else matrix[2])
             towards = scaled(row, sign)
+            hull = hull_of(hulls, i)
             vertex = support(hull, towards[0], towards[1], towards[2])
             reach = dot(towards, (hull.vertices[vertex, 0], hull.vertices[vertex, 1], hull.vertices[vertex, 2]))
             touching[i, wall] = sign * positions[i, axis] + sizes[i] * reach >= half[axis]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
+from harness.scene.ignored_pairs import kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,13 @@ class Contacts:
     def of_spheres(cls, duration: float, pairs: Pairs, begin: Floats, end: Floats) -> Contacts:
         """The contacts of spheres: each encounter is one."""
         return cls(duration, pairs, begin, end, np.arange(len(begin)), begin, end)
+
+    def encounters_without(self, ignored: Pairs) -> Contacts:
+        """Of encounters of spheres, those of pairs that are not ignored, (m, 2) int array."""
+        if not len(ignored):
+            return self
+        asked = kept(self.pairs, ignored)
+        return Contacts.of_spheres(self.duration, self.pairs[asked], self.begin[asked], self.end[asked])
 
     def __len__(self) -> int:
         return len(self.onset)

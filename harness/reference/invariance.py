@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from harness.arrays import Floats, Ints
+from harness.arrays import Floats, Ints, Pairs
 from harness.motion.hits import Trace
 from harness.motion.kinematics import Trajectory
 from harness.scene.bodies import Bodies
@@ -60,7 +60,10 @@ def reversal_error(scene: Scene, end: Trace, fly: Fly) -> float:
 def relabelling_error(scene: Scene, end: Trace, fly: Fly) -> float:
     """Largest distance between where a body ends and where it ends with all bodies numbered backwards."""
     order = np.arange(len(scene.bodies))[::-1]
-    other = fly(replace(scene, bodies=_ordered(scene.bodies, order)), 1.0)
+    other = fly(
+        replace(scene, bodies=_ordered(scene.bodies, order), mesh_of=scene.mesh_of[order], ignored=_renumbered(scene)),
+        1.0,
+    )
     return _apart(other.positions[order], end.positions, scene)
 
 
@@ -77,8 +80,8 @@ def mirror_error(scene: Scene, end: Trace, fly: Fly) -> float:
         sizes=bodies.sizes,
         masses=bodies.masses,
     )
-    mesh = _mirrored(scene.mesh, flip) if scene.mesh and scene.shape != "sphere" else scene.mesh
-    other = fly(replace(scene, mesh=mesh, bodies=mirrored), 1.0)
+    meshes = tuple(_mirrored(mesh, flip) for mesh in scene.meshes) if scene.shape != "sphere" else scene.meshes
+    other = fly(replace(scene, meshes=meshes, bodies=mirrored), 1.0)
     return _apart(other.positions * flip, end.positions, scene)
 
 
@@ -145,6 +148,12 @@ def _ordered(bodies: Bodies, order: Ints) -> Bodies:
         sizes=bodies.sizes[order],
         masses=bodies.masses[order],
     )
+
+
+def _renumbered(scene: Scene) -> Pairs:
+    """The ignored pairs of bodies that are numbered backwards."""
+    pairs: Pairs = np.sort(len(scene.bodies) - 1 - scene.ignored, axis=1)
+    return pairs[np.lexsort(pairs.T[::-1])]
 
 
 def _mirrored(mesh: Mesh, flip: Floats) -> Mesh:

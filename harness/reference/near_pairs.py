@@ -14,6 +14,7 @@ from harness.arrays import Floats, Ints, Pairs
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.reference.body_gaps import GapBounds, sphere_bounds, surface_bounds
+from harness.scene.ignored_pairs import without
 from harness.scene.mesh import Surface
 from harness.scene.scene import Scene
 
@@ -84,7 +85,7 @@ def pair_bounds(scene: Scene, trajectory: Trajectory, i: int, j: int) -> GapBoun
 
 def placed(scene: Scene, trajectory: Trajectory, body: int) -> Surface:
     """A body's surface as it is turned, in m from its centre."""
-    solid = scene.solid_of(float(scene.bodies.sizes[body]))
+    solid = scene.solid_of_body(body)
     return Surface(solid.vertices @ _matrix(trajectory.quaternions[body]).T, solid.faces)
 
 
@@ -125,4 +126,4 @@ def _close(scene: Scene, positions: Floats, within: float) -> Pairs:
     distances = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
     near = distances <= (radii[pairs[:, 0]] + radii[pairs[:, 1]] + within) * (1.0 + _SLACK)
     found: Pairs = pairs[near][np.lexsort((pairs[near][:, 1], pairs[near][:, 0]))]
-    return found
+    return without(found, scene.ignored)

@@ -26,7 +26,7 @@ def scene_contacts(scene: Scene, duration: float, tolerance: float) -> Contacts:
         If a contact of hulls or surfaces cannot be followed.
     """
     if scene.shape == "sphere":
-        return sphere_contacts(scene.bodies, scene.box, duration)
+        return sphere_contacts(scene.bodies, scene.box, duration).encounters_without(scene.ignored)
     return solid_contacts(scene, duration, tolerance)
 
 

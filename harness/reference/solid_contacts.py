@@ -6,7 +6,7 @@ the first contact to the last.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +31,7 @@ ENLARGED = 0.02
 # Where a search is given up, it is done again at ten times the tolerance, up to this, of size.
 LARGEST_TOLERANCE = 1e-6
 
-Search = Callable[[Motion, Motion, float, float], Intervals]
+Search = Callable[[int, int, Motion, Motion, float, float], Intervals]
 
 
 def solid_contacts(scene: Scene, duration: float, tolerance: float) -> Contacts:
@@ -51,7 +51,7 @@ def solid_contacts(scene: Scene, duration: float, tolerance: float) -> Contacts:
     InputError
         If a contact cannot be followed, even at a larger tolerance.
     """
-    encounters = sphere_contacts(scene.bodies, scene.box, duration, margin=ENLARGED)
+    encounters = sphere_contacts(scene.bodies, scene.box, duration, margin=ENLARGED).encounters_without(scene.ignored)
     search = _Search(scene, tolerance)
     windows = zip(encounters.pairs.tolist(), encounters.begin.tolist(), encounters.end.tolist(), strict=True)
     found = [search.within(i, j, begin, end) for (i, j), begin, end in windows]
@@ -78,11 +78,11 @@ class _Search:
     """Looks for the contacts of pairs of a scene."""
 
     def __init__(self, scene: Scene, tolerance: float) -> None:
-        assert scene.mesh is not None
         self._bodies, self._tolerance = scene.bodies, tolerance
         self._paths = folded_paths(scene.bodies, scene.box)
-        self._reach = float(np.linalg.norm(scene.mesh.hull.vertices, axis=1).max())
-        self._search = _hulls(scene.mesh) if scene.shape == "hull" else _surfaces(scene.mesh)
+        self._reaches = [float(np.linalg.norm(mesh.hull.vertices, axis=1).max()) for mesh in scene.meshes]
+        self._mesh_of = scene.mesh_of.tolist()
+        self._search = _hulls(scene.meshes) if scene.shape == "hull" else _surfaces(scene.meshes)
 
     def within(self, i: int, j: int, begin: float, end: float) -> list[Contact]:
         """The contacts of a pair in a window (s)."""
@@ -93,7 +93,7 @@ class _Search:
             turn(self._bodies.quaternions[[i, j]], self._bodies.spins[[i, j]], start, quaternions)
             one = self._motion(i, piece.places[0], piece.velocities[0], quaternions[0])
             other = self._motion(j, piece.places[1], piece.velocities[1], quaternions[1])
-            for onset, release in self._intervals(one, other, stop - start):
+            for onset, release in self._intervals(self._mesh_of[i], self._mesh_of[j], one, other, stop - start):
                 # what lasts to the end of one piece goes on in the next
                 goes_on = bool(found) and onset == 0.0 and found[-1].release == start
                 first = found.pop().onset if goes_on else start + onset
@@ -101,15 +101,17 @@ class _Search:
         return found
 
     def _motion(self, body: int, place: Floats, velocity: Floats, quaternion: Floats) -> Motion:
-        size = float(self._bodies.sizes[body])
+        size, reach = float(self._bodies.sizes[body]), self._reaches[self._mesh_of[body]]
         (x, y, z), (u, v, w), spin = place.tolist(), velocity.tolist(), self._bodies.spins[body].tolist()
         q0, q1, q2, q3 = quaternion.tolist()
-        return Motion((x, y, z), (u, v, w), (q0, q1, q2, q3), (spin[0], spin[1], spin[2]), size, size * self._reach)
+        return Motion((x, y, z), (u, v, w), (q0, q1, q2, q3), (spin[0], spin[1], spin[2]), size, size * reach)
 
-    def _intervals(self, one: Motion, other: Motion, end: float) -> list[list[float]]:
-        """The contacts of two motions, from time 0 to an end (s)."""
+    def _intervals(self, mesh: int, other_mesh: int, one: Motion, other: Motion, end: float) -> list[list[float]]:
+        """The contacts of two motions of bodies of these meshes, from time 0 to an end (s)."""
         tolerance = self._tolerance
-        while (found := self._search(one, other, end, tolerance * (one.size + other.size) / 2.0)).stalled:
+        while (
+            found := self._search(mesh, other_mesh, one, other, end, tolerance * (one.size + other.size) / 2.0)
+        ).stalled:
             tolerance *= 10.0
             if tolerance > LARGEST_TOLERANCE:
                 raise InputError("the reference cannot follow a contact of these bodies; measure without a reference")
@@ -117,11 +119,11 @@ class _Search:
         return times
 
 
-def _hulls(mesh: Mesh) -> Search:
-    hull = support_map(mesh.hull.vertices)
-    return lambda one, other, end, gap: hull_contacts(hull, hull, one, other, 0.0, end, gap)
+def _hulls(meshes: Sequence[Mesh]) -> Search:
+    hulls = [support_map(mesh.hull.vertices) for mesh in meshes]
+    return lambda i, j, one, other, end, gap: hull_contacts(hulls[i], hulls[j], one, other, 0.0, end, gap)
 
 
-def _surfaces(mesh: Mesh) -> Search:
-    shape = mesh_shape(mesh)
-    return lambda one, other, end, gap: mesh_contacts(shape, shape, one, other, 0.0, end, gap)
+def _surfaces(meshes: Sequence[Mesh]) -> Search:
+    shapes = [mesh_shape(mesh) for mesh in meshes]
+    return lambda i, j, one, other, end, gap: mesh_contacts(shapes[i], shapes[j], one, other, 0.0, end, gap)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.arrays import Floats
+from harness.arrays import Floats, Ints
 from harness.store.recording import Recording
 
 Fact = tuple[str, str]
@@ -39,14 +39,17 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         "leg_velocities": ("f4", recording.leg_velocities[order]),
         "sizes": ("f4", recording.sizes),
         "quaternions": ("f4", recording.quaternions),
-        "spins": ("f4", recording.spins if recording.surface else np.zeros_like(recording.spins)),
+        "spins": ("f4", recording.spins if recording.surfaces else np.zeros_like(recording.spins)),
         "hit_first": ("i4", recording.hit_bodies[:, 0]),
         "hit_second": ("i4", walls),
     }
-    if recording.surface is not None:
-        few = len(recording.surface.vertices) < 2**16
-        arrays["vertices"] = ("f4", recording.surface.vertices)
-        arrays["faces"] = ("u2" if few else "u4", recording.surface.faces)
+    if recording.surfaces:
+        few = max(len(surface.vertices) for surface in recording.surfaces) < 2**16
+        arrays["vertices"] = ("f4", np.concatenate([surface.vertices for surface in recording.surfaces]))
+        arrays["faces"] = ("u2" if few else "u4", np.concatenate([surface.faces for surface in recording.surfaces]))
+        arrays["vertex_starts"] = ("u4", _starts([len(surface.vertices) for surface in recording.surfaces]))
+        arrays["face_starts"] = ("u4", _starts([len(surface.faces) for surface in recording.surfaces]))
+        arrays["mesh_of"] = ("u4", recording.surface_of)
     near = recording.near
     if near is not None:
         arrays["near_frames"] = ("u4", near.frames)
@@ -63,7 +66,7 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
     return {
         "title": title,
         "shape": recording.shape,
-        "mesh": recording.surface.name if recording.surface else None,
+        "mesh": ", ".join(surface.name for surface in recording.surfaces) or None,
         "duration": recording.duration,
         "dt": recording.dt,
         "half_box": recording.half_box.tolist(),
@@ -71,6 +74,12 @@ def document(recording: Recording, title: str, facts: Sequence[Fact] = ()) -> di
         "arrays": places,
         "data": base64.b64encode(bytes(content)).decode("ascii"),
     }
+
+
+def _starts(lengths: Sequence[int]) -> Ints:
+    """Where each of several arrays of these lengths begins that stand one after another, and where the last ends."""
+    starts: Ints = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+    return starts
 
 
 def start_positions(recording: Recording) -> Floats:

@@ -87,7 +87,7 @@ def live_page(title: str, settings: Sequence[Setting], columns: Sequence[str]) -
 
 def summary(recording: Recording) -> str:
     """What a recording shows, in a phrase."""
-    look = "sphere" if recording.surface is None else recording.surface.name
+    look = ", ".join(surface.name for surface in recording.surfaces) or "sphere"
     bodies = f"{len(recording)} {'body' if len(recording) == 1 else 'bodies'} ({look})"
     pairs = int((recording.hit_walls < 0).sum())
     how = "from hit to hit" if recording.dt is None else f"in frames of {recording.dt * 1000:.4g} ms"

@@ -17,7 +17,7 @@ from trimesh.creation import icosphere
 
 from harness.arrays import Floats
 from harness.replay.document import start_positions
-from harness.store.recording import Recording
+from harness.store.recording import Recording, Surface
 
 WIDTH, HEIGHT = 800, 500
 _OVERSAMPLING = 2  # painted at so many times the size
@@ -73,10 +73,7 @@ def _draw_box(draw: ImageDraw.ImageDraw, half: Floats, eye: Floats, axes: Floats
 
 
 def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, axes: Floats) -> None:
-    vertices, faces = _form(recording)
-    turns = Rotation.from_quat(recording.quaternions, scalar_first=True).as_matrix()
-    placed = np.einsum("nij,vj->nvi", turns, vertices) * recording.sizes[:, None, None]
-    corners = (placed + start_positions(recording)[:, None, :])[:, faces].reshape(-1, 3, 3)
+    corners = _corners(recording)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     facing = ((eye - corners[:, 0]) * normals).sum(axis=1) > 0.0
@@ -94,14 +91,26 @@ def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, a
         draw.polygon(triangle, fill=colour)
 
 
-def _form(recording: Recording) -> tuple[Floats, NDArray[Any]]:
+def _corners(recording: Recording) -> Floats:
+    """(k, 3, 3) m: the triangles of all bodies."""
+    turns = Rotation.from_quat(recording.quaternions, scalar_first=True).as_matrix()
+    places, found = start_positions(recording), []
+    for number in range(max(1, len(recording.surfaces))):
+        vertices, faces = _form(recording, recording.surfaces[number] if recording.surfaces else None)
+        chosen = np.flatnonzero(recording.surface_of == number) if recording.surfaces else np.arange(len(recording))
+        placed = np.einsum("nij,vj->nvi", turns[chosen], vertices) * recording.sizes[chosen, None, None]
+        found.append((placed + places[chosen, None, :])[:, faces].reshape(-1, 3, 3))
+    return np.concatenate(found)
+
+
+def _form(recording: Recording, surface: Surface | None) -> tuple[Floats, NDArray[Any]]:
     """Vertices and faces of one body of diameter 1, so coarse that all bodies together can be painted."""
     most = max(20, _MOST_TRIANGLES // len(recording))
-    if recording.surface is None:
+    if surface is None:
         halvings = max(1, min(3, int(np.log(most / 20) / np.log(4))))
         ball = icosphere(subdivisions=halvings, radius=0.5)
         return np.asarray(ball.vertices), np.asarray(ball.faces)
-    vertices, faces = recording.surface.vertices, recording.surface.faces
+    vertices, faces = surface.vertices, surface.faces
     if len(faces) <= most:
         return vertices, faces
     coarse, corners = simplify(vertices.copy(), faces.copy(), target_count=max(most, 60))  # it wants to write

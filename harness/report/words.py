@@ -83,16 +83,19 @@ def scene_text(parameters: Mapping[str, Any]) -> str:
 
     >>> scene_text({"count": 40, "mesh": "pumpkin-1753.ply", "shape": "hull", "packing": 0.0971}).replace("\u00a0", " ")
     '40 bodies of pumpkin-1753 (hull) at packing 0.0971'
+    >>> scene_text({"count": 40, "mesh": {"choice": ["a.ply", "b.ply"]}, "shape": "mesh"}).replace("\u00a0", " ")
+    '40 bodies of 2 meshes (mesh)'
     >>> scene_text({"count": 9, "shape": "sphere", "query": "distance", "within": 0.05}).replace("\u00a0", " ")
     '9 spheres, query distance within 0.05 m'
     """
     count = parameters.get("count")
     bodies = plural(int(count), "body", "bodies") if isinstance(count, int | float) else "bodies"
-    shape, mesh = parameters.get("shape"), parameters.get("mesh")
+    shape = parameters.get("shape")
     if shape == "sphere":
         bodies = bodies.replace("bodies", "spheres").replace("body", "sphere")
-    elif mesh:
-        bodies += f" of {PurePosixPath(str(mesh)).stem} ({shape})"
+    elif names := _mesh_names(parameters):
+        what = PurePosixPath(names[0]).stem if len(names) == 1 else f"{len(names)} meshes"
+        bodies += f" of {what} ({shape})"
     packing = parameters.get("packing")
     scene = f"{bodies} at packing {number(packing)}" if isinstance(packing, int | float) else bodies
     return ", ".join(part for part in (scene, _query_text(parameters)) if part)
@@ -103,3 +106,11 @@ def _query_text(parameters: Mapping[str, Any]) -> str:
     if query is None or query == "collision":
         return ""
     return f"query {query}" if within is None else f"query {query} within {leaf_text(within)}\u00a0m"
+
+
+def _mesh_names(parameters: Mapping[str, Any]) -> list[str]:
+    """The meshes that bodies may have, each once."""
+    mesh, bodies = parameters.get("mesh"), parameters.get("bodies")
+    chosen = mesh["choice"] if isinstance(mesh, Mapping) else [mesh]
+    own = [body.get("mesh") for body in bodies] if isinstance(bodies, list | tuple) else []
+    return [str(name) for name in dict.fromkeys([*chosen, *own]) if name]

@@ -18,7 +18,6 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import cache
-from pathlib import Path
 from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -32,6 +31,8 @@ from harness.runner.schedule import Job
 from harness.runner.servers import Servers, task_of
 from harness.runner.task import Report, Task
 from harness.scene.mesh import Mesh
+from harness.scene.recorded_poses import RecordedPoses
+from harness.scene.scene_files import Opened, SceneFiles
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -88,9 +89,7 @@ class Cluster:
                 self._client.run(stop_here, on_error="ignore")
         self._open.close()
 
-    def run(
-        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
-    ) -> Iterator[FinishedJob]:
+    def run(self, jobs: Iterable[Job], meshes: Opened, before: Callable[[Job], None]) -> Iterator[FinishedJob]:
         """See `harness.runner.executor.Executor`; `before` is called when a job is handed out.
 
         Raises
@@ -107,9 +106,7 @@ class Cluster:
                 "command does the rest"
             ) from error
 
-    def _run(
-        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
-    ) -> Iterator[FinishedJob]:
+    def _run(self, jobs: Iterable[Job], meshes: Opened, before: Callable[[Job], None]) -> Iterator[FinishedJob]:
         waiting = deque(jobs)
         contents: dict[str, Future] = {}
         while waiting or self._sent:
@@ -121,12 +118,13 @@ class Cluster:
             for future in self._finished():
                 yield self._done(self._sent.pop(future), future)
 
-    def _submit(self, job: Job, meshes: Mapping[Path, Mesh], contents: dict[str, Future]) -> Future:
-        task, mesh = task_of(job.experiment, job.point, meshes, recorded=job.recorded, on_demand=job.on_demand)
-        if mesh is not None and mesh.digest not in contents:
-            # as a task, not as scattered data: it can be made again when the worker that holds it dies
-            contents[mesh.digest] = self._client.submit(_itself, mesh, key=f"mesh-{mesh.digest}")
-        return self._client.submit(run_here, task, contents[mesh.digest] if mesh else None, pure=False)
+    def _submit(self, job: Job, meshes: Opened, contents: dict[str, Future]) -> Future:
+        task, files = task_of(job.experiment, job.point, meshes, recorded=job.recorded, on_demand=job.on_demand)
+        for part in files.parts:
+            if part.identity not in contents:
+                # as a task, not as scattered data: it can be made again when the worker that holds it dies
+                contents[part.identity] = self._client.submit(_itself, part, key=f"file-{part.identity}")
+        return self._client.submit(run_here, task, *(contents[identity] for identity in files.identities), pure=False)
 
     def _finished(self) -> list[Future]:
         """Wait until some runs have ended; none after a while, so that one can look around."""
@@ -258,11 +256,11 @@ def identity() -> Identity:
     return Identity(socket.gethostname(), sources_hash(), package_versions(packages()))
 
 
-def run_here(task: Task, mesh: Mesh | None) -> Outcome:
+def run_here(task: Task, *parts: Mesh | RecordedPoses) -> Outcome:
     """On a worker: one run in a process of its own, forked from a warm server of this slot."""
     started = datetime.now(timezone.utc)
     servers = _slots.setdefault(threading.get_ident(), Servers())
-    return Outcome(servers.run(task, mesh), socket.gethostname(), _machine(), started)
+    return Outcome(servers.run(task, SceneFiles.of(parts)), socket.gethostname(), _machine(), started)
 
 
 def stop_here() -> None:
@@ -282,5 +280,5 @@ def _machine() -> dict[str, Any]:
     return facts | {"fingerprint": fingerprint(facts)}
 
 
-def _itself(mesh: Mesh) -> Mesh:
-    return mesh
+def _itself(part: Mesh | RecordedPoses) -> Mesh | RecordedPoses:
+    return part

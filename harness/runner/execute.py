@@ -24,8 +24,8 @@ from harness.runner.recording import recording_of
 from harness.runner.repetition import fly_long_enough, warm
 from harness.runner.scene_of_point import build_scene
 from harness.runner.warm_up import warm_up
-from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.scene.scene_files import SceneFiles
 from harness.store.recording import Recording
 
 
@@ -42,7 +42,7 @@ class Result:
 
 def execute(
     point: Point,
-    mesh: Mesh | None,
+    files: SceneFiles,
     *,
     memory: int | None = None,
     traced: bool = False,
@@ -54,7 +54,7 @@ def execute(
     Parameters
     ----------
     point : Point
-    mesh : the mesh its scene names
+    files : that its scene names
     memory : B that the scene may need
     traced : keep every hit, with the state of its bodies
     recorded : keep what a replay shows, and measure nothing else: the clocks of such a run see it
@@ -69,7 +69,7 @@ def execute(
     """
     warm_up(point)
     clock = Clock("setup_seconds")
-    scene, law, method = build_scene(point, mesh, memory), law_of(point), method_of_point(point)
+    scene, law, method = build_scene(point, files, memory), law_of(point), method_of_point(point)
     plan = method.plan(scene, law, recorded=traced or recorded)
     pipeline = method.load(scene, plan)
     clock.lap("setup_seconds")
@@ -88,9 +88,9 @@ def execute(
     metrics |= invariance(on_demand, scene, partial(_hits_as_planned, method, plan, law))
     if point.reference is not None and not traced:
         if outcome.answers is not None:
-            metrics |= accuracy.near_errors(point, mesh, outcome.answers)
+            metrics |= accuracy.near_errors(point, files, outcome.answers)
         else:
-            metrics |= accuracy.errors(point, mesh, outcome.trace or hits(point, scene), hits)
+            metrics |= accuracy.errors(point, files, outcome.trace or hits(point, scene), hits)
     metrics |= from_outcome(scene, replace(outcome, metrics=metrics))
     _require_finite_metrics(metrics)
     return Result(metrics, plan, outcome.trace if traced else None, flights)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timezone
-from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol
 
 from harness.runner.schedule import Job
 from harness.runner.servers import Servers, task_of
 from harness.runner.task import Report
-from harness.scene.mesh import Mesh
+from harness.scene.scene_files import Opened
 
 
 @dataclass(frozen=True)
@@ -41,9 +40,7 @@ class Executor(Protocol):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None: ...
 
-    def run(
-        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
-    ) -> Iterator[FinishedJob]:
+    def run(self, jobs: Iterable[Job], meshes: Opened, before: Callable[[Job], None]) -> Iterator[FinishedJob]:
         """Do the jobs, about in this order; each is yielded when it ends.
 
         Parameters
@@ -67,14 +64,12 @@ class LocalExecutor:
     ) -> None:
         self._servers.close()
 
-    def run(
-        self, jobs: Iterable[Job], meshes: Mapping[Path, Mesh], before: Callable[[Job], None]
-    ) -> Iterator[FinishedJob]:
+    def run(self, jobs: Iterable[Job], meshes: Opened, before: Callable[[Job], None]) -> Iterator[FinishedJob]:
         """See `Executor`."""
         for job in jobs:
             before(job)
-            task, mesh = task_of(
+            task, files = task_of(
                 job.experiment, job.point, meshes, pinned=True, recorded=job.recorded, on_demand=job.on_demand
             )
             started = datetime.now(timezone.utc)
-            yield FinishedJob(job, self._servers.run(task, mesh), timing_grade=True, started=started)
+            yield FinishedJob(job, self._servers.run(task, files), timing_grade=True, started=started)

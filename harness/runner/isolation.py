@@ -22,19 +22,19 @@ from harness.runner.execute import execute
 from harness.runner.scene_of_point import SceneSizeError
 from harness.runner.task import Report, Task
 from harness.scene.launch import PlacementError
-from harness.scene.mesh import Mesh
+from harness.scene.scene_files import SceneFiles
 
 # What a run may write to its own output; a backend that prints without end must not fill the memory.
 _OUTPUT_LIMIT = 16 * 2**20
 _TAIL = 2000
 
 
-def run_isolated(task: Task, mesh: Mesh | None, channel: Connection) -> Report | None:
+def run_isolated(task: Task, files: SceneFiles, channel: Connection) -> Report | None:
     """Run a task in a forked process and say how it ended; None if the other side of the channel has gone meanwhile."""
     conditions = Conditions(pinned=task.pinned)
     output = os.memfd_create("output")
     try:
-        with Child.fork(partial(_run, task, mesh, channel, conditions.core), output) as child:
+        with Child.fork(partial(_run, task, files, channel, conditions.core), output) as child:
             answer = child.receive(task.timeout, stop=channel)
             ending = child.end()
         printed = _tail(output)
@@ -46,27 +46,27 @@ def run_isolated(task: Task, mesh: Mesh | None, channel: Connection) -> Report |
     return report.with_circumstances(printed, conditions.metrics())
 
 
-def _run(task: Task, mesh: Mesh | None, channel: Connection, core: int | None, answers: Channel) -> None:
+def _run(task: Task, files: SceneFiles, channel: Connection, core: int | None, answers: Channel) -> None:
     """The forked process: limits, then the run, then its report."""
     channel.close()  # not for a backend to write to
     if core is not None:
         with suppress(OSError):
             os.sched_setaffinity(0, {core})
     limit(memory=task.memory, output=_OUTPUT_LIMIT)
-    report = _reported(task, mesh)
+    report = _reported(task, files)
     with suppress(Exception):  # of what a backend has made of them
         sys.stdout.flush()
         sys.stderr.flush()
     answers.send(report)
 
 
-def _reported(task: Task, mesh: Mesh | None) -> bytes:
+def _reported(task: Task, files: SceneFiles) -> bytes:
     memory = Report("memory", f"needed more than {task.memory / 2**30:.3g} GiB")
     try:
         try:
             result = execute(
                 task.point,
-                mesh,
+                files,
                 memory=task.memory,
                 traced=task.traced,
                 recorded=task.recorded,

@@ -17,13 +17,14 @@ from harness.measure.metrics import METRICS
 from harness.methods.stages import StageError
 from harness.scene.mesh import NO_HULL, Mesh
 from harness.scene.mesh_child import open_meshes
+from harness.scene.scene_files import Opened
 
 
 class Prepared(NamedTuple):
     """The valid experiments, their meshes by file, the problems of the others, and what others lack on this machine."""
 
     experiments: list[Experiment]
-    meshes: dict[Path, Mesh]
+    meshes: Opened
     problems: list[Problem]
     lacking: list[Problem]
 
@@ -32,7 +33,7 @@ def prepare(
     paths: Iterable[str | PathLike[str]],
     overrides: Mapping[str, object],
     tell: Callable[[str], None] = lambda _: None,
-) -> tuple[list[Experiment], dict[Path, Mesh]]:
+) -> tuple[list[Experiment], Opened]:
     """Load every experiment that the paths name, and open all of their meshes in one child process.
 
     Those whose meshes lie in a package that is not installed are passed over.
@@ -88,7 +89,7 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     return Prepared(valid, meshes, list(dict.fromkeys(problems)), lacking)
 
 
-def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], dict[Path, str]]:
+def _open_meshes(experiments: Sequence[Experiment]) -> tuple[Opened, dict[Path, str]]:
     paths = list(dict.fromkeys(path for experiment in experiments for path in experiment.mesh_paths.values()))
     if not paths:
         return {}, {}
@@ -97,15 +98,14 @@ def _open_meshes(experiments: Sequence[Experiment]) -> tuple[dict[Path, Mesh], d
     return meshes, {path: message for path, message in opened.items() if isinstance(message, str)}
 
 
-def _mesh_problems(
-    experiment: Experiment, meshes: Mapping[Path, Mesh], broken: Mapping[Path, str]
-) -> Iterator[Problem]:
-    hulls = {point.scene.mesh for point in experiment.points if point.scene.shape == "hull"}
+def _mesh_problems(experiment: Experiment, meshes: Opened, broken: Mapping[Path, str]) -> Iterator[Problem]:
+    of_hulls = (point.scene.mesh_names for point in experiment.points if point.scene.shape == "hull")
+    hulls = {name for names in of_hulls for name in names}
     for reference, path in experiment.mesh_paths.items():
         if path in broken:
-            yield experiment.leaf_problem("mesh", reference, broken[path])
-        elif meshes[path].flat and reference in hulls:
-            yield experiment.leaf_problem("mesh", reference, f"{path.name}: {NO_HULL}")
+            yield from experiment.mesh_problems(reference, broken[path])
+        elif isinstance(mesh := meshes[path], Mesh) and mesh.flat and reference in hulls:
+            yield from experiment.mesh_problems(reference, f"{path.name}: {NO_HULL}")
 
 
 def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Iterator[Problem]:
@@ -118,20 +118,20 @@ def _namesakes(experiment: Experiment, experiments: Sequence[Experiment]) -> Ite
             yield experiment.problem((), message)
 
 
-def _forced(experiment: Experiment, meshes: Mapping[Path, Mesh]) -> Iterator[Problem]:
+def _forced(experiment: Experiment, meshes: Opened) -> Iterator[Problem]:
     """Stages that are forced where that would change a result, or that do not exist, as the points' plans tell."""
     forcing = [point for point in experiment.points if point.engine.stages]
     if not forcing:
         return
     from harness.runner.execute import plan_of  # half a second, which most experiments need not spend
     from harness.runner.scene_of_point import SceneSizeError, build_scene
-    from harness.runner.servers import mesh_of
+    from harness.runner.servers import files_of
     from harness.scene.launch import PlacementError
 
     refused: set[tuple[str, str]] = set()
     for point in forcing:
         try:
-            plan_of(point, build_scene(point, mesh_of(experiment, point, meshes), experiment.measure.memory))
+            plan_of(point, build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory))
         except StageError as error:
             for stage, message in error.refusals:
                 if (stage, message) not in refused:

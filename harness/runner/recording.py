@@ -37,10 +37,10 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
     scene : its scene, at time 0
     outcome : of the flight, with trace and course
     """
-    trace, course, mesh, bodies = outcome.trace, outcome.course, scene.mesh, scene.bodies
+    trace, course, bodies = outcome.trace, outcome.course, scene.bodies
     assert trace is not None
     assert course is not None
-    shown = None if mesh is None or scene.shape == "sphere" else mesh
+    shown = () if scene.shape == "sphere" else scene.meshes
     return Recording(
         shape=scene.shape,
         duration=trace.time,
@@ -49,7 +49,8 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
         sizes=bodies.sizes,
         quaternions=bodies.quaternions,
         spins=bodies.spins,
-        surface=Surface(shown.name, shown.digest, shown.vertices, shown.faces) if shown else None,
+        surfaces=tuple(Surface(mesh.name, mesh.digest, mesh.vertices, mesh.faces) for mesh in shown),
+        surface_of=scene.mesh_of,
         leg_times=course.times,
         leg_bodies=course.bodies,
         leg_positions=course.positions,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.arrays import Floats, Ints
 from harness.experiment.experiment import Point
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.launch import directions, orientations, place
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.scene.scene_files import SceneFiles
 
 # The most sizes drawn to compute the packing of a scene; of more bodies, a sample is drawn.
 MOST_DRAWN = 10**6
@@ -21,13 +23,13 @@ class SceneSizeError(Exception):
     """The scene would need more memory than the run may use."""
 
 
-def build_scene(point: Point, mesh: Mesh | None, memory: int | None = None) -> Scene:
+def build_scene(point: Point, files: SceneFiles, memory: int | None = None) -> Scene:
     """The scene of a point.
 
     Parameters
     ----------
     point : Point
-    mesh : the mesh its scene names; None for spheres without one
+    files : that it names
     memory : B the run may use; more is refused before anything is allocated
 
     Raises
@@ -38,68 +40,127 @@ def build_scene(point: Point, mesh: Mesh | None, memory: int | None = None) -> S
 
     Notes
     -----
-    Sizes, places, orientations, directions, speeds and spins are drawn from streams of their own, so that changing the
-    distribution of one leaves the others as they were.
+    Sizes, places, orientations, directions, speeds, spins and meshes are drawn from streams of their own, so that
+    changing the distribution of one leaves the others as they were.
     """
-    count = point.scene.count if point.scene.bodies is None else len(point.scene.bodies)
-    _refuse_too_large(count or 0, memory)
-    bodies = _launched(point) if point.scene.bodies is None else _explicit(point)
-    return Scene(point.scene.shape, mesh, bodies, box_of(point))
+    count = body_count(point)
+    _refuse_too_large(count, memory)
+    mesh_of = _mesh_numbers(point, count)
+    bodies = _launched(point, files, mesh_of) if point.scene.bodies is None else _explicit(point, files, mesh_of)
+    return Scene(
+        point.scene.shape,
+        files.meshes,
+        bodies,
+        box_of(point, files),
+        mesh_of=mesh_of,
+        ignored=_ignored(point),
+    )
 
 
-def box_of(point: Point) -> Box:
+def body_count(point: Point) -> int:
+    """How many bodies a point has."""
+    return (point.scene.count or 0) if point.scene.bodies is None else len(point.scene.bodies)
+
+
+def box_of(point: Point, files: SceneFiles) -> Box:
     """The box of a point: as given, or a cube by its ratio (mean size / side)² to the bodies."""
     if point.scene.box is not None:
         return Box(np.array(point.scene.box) / 2)
     assert point.scene.box_ratio is not None, "the schema asks for a box or a box_ratio"
-    side = _mean_size(point) / np.sqrt(point.scene.box_ratio)
+    side = mean_size(point, files) / np.sqrt(point.scene.box_ratio)
     return Box(np.full(3, side / 2))
 
 
-def derived_parameters(point: Point, mesh: Mesh | None) -> dict[str, float]:
+def derived_parameters(point: Point, files: SceneFiles) -> dict[str, float]:
     """`faces`, `hull_vertices`, `packing` and `box_side` of a point, without placing its bodies.
 
-    Packing is that of the sizes really drawn, of a million bodies and more that of the first million.
+    Packing is that of the sizes really drawn, of a million bodies and more that of the first million; so are the
+    faces and vertices of several meshes, which are means over the bodies.
     """
-    box = box_of(point)
-    if point.scene.bodies is not None:
-        cubes = sum(body.size**3 for body in point.scene.bodies)
-    elif point.scene.size.kind == "constant":
-        cubes = (point.scene.count or 0) * point.scene.size.mean**3
-    else:
-        count = point.scene.count or 0
-        drawn = point.scene.size.sample(_streams(point)["sizes"], min(count, MOST_DRAWN))
-        cubes = float((drawn**3).sum()) * (count / max(1, len(drawn)))
+    count = body_count(point)
+    mesh_of = _mesh_numbers(point, min(count, MOST_DRAWN))
+    box = box_of(point, files)
     return {
-        "faces": len(mesh.faces) if mesh else 0,
-        "hull_vertices": len(mesh.hull.vertices) if mesh else 0,
-        "packing": float(np.pi / 6 * cubes / box.volume),
+        "faces": _mean([len(mesh.faces) for mesh in files.meshes], mesh_of),
+        "hull_vertices": _mean([len(mesh.hull.vertices) for mesh in files.meshes], mesh_of),
+        "packing": float(np.pi / 6 * _cubes(point, files, mesh_of) / box.volume),
         "box_side": float(np.cbrt(box.volume)),
     }
 
 
-def _mean_size(point: Point) -> float:
-    if point.scene.bodies is None:
-        return float(point.scene.size.mean)
-    return float(np.mean([body.size for body in point.scene.bodies])) if point.scene.bodies else 1.0
+def mean_size(point: Point, files: SceneFiles) -> float:
+    """The expected size of a body, m."""
+    scene = point.scene
+    if scene.bodies is not None:
+        return float(np.mean(_explicit_sizes(point, files, _mesh_numbers(point, len(scene.bodies)))))
+    if scene.size.is_native:
+        chosen = [files.meshes[scene.mesh_names.index(name)].diameter for name in scene.mesh_choice]
+        return float(np.mean(chosen))
+    return float(scene.size.mean)
+
+
+def _mean(of_mesh: list[int], mesh_of: Ints) -> float:
+    """The number of the one mesh, or the mean over the bodies; 0 without a mesh."""
+    if len(of_mesh) < 2 or not len(mesh_of):
+        return of_mesh[0] if of_mesh else 0
+    return float(np.array(of_mesh)[mesh_of].mean())
+
+
+def _cubes(point: Point, files: SceneFiles, mesh_of: Ints) -> float:
+    """m³, the sum of all sizes cubed."""
+    scene, count = point.scene, body_count(point)
+    if scene.bodies is None and scene.size.kind == "constant":
+        return float(count * scene.size.mean**3)
+    sizes = _sizes(point, files, mesh_of) if scene.bodies is None else _explicit_sizes(point, files, mesh_of)
+    return float((sizes**3).sum()) * (count / max(1, len(sizes)))
 
 
 def _streams(point: Point) -> dict[str, np.random.Generator]:
-    names = ("sizes", "places", "orientations", "directions", "speeds", "axes", "spins")
+    names = ("sizes", "places", "orientations", "directions", "speeds", "axes", "spins", "meshes")
     seeds = np.random.SeedSequence(point.scene.seed).spawn(len(names))
     return {name: np.random.default_rng(seed) for name, seed in zip(names, seeds, strict=True)}
 
 
-def _sizes(point: Point) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return point.scene.size.sample(_streams(point)["sizes"], point.scene.count or 0)
+def _mesh_numbers(point: Point, count: int) -> Ints:
+    """(count,): the number of each body's mesh among those that the scene names."""
+    names, choice, bodies = point.scene.mesh_names, point.scene.mesh_choice, point.scene.bodies
+    if len(names) < 2:
+        return np.zeros(count, np.int64)
+    numbers = np.zeros(count, np.int64)
+    if choice:
+        chosen = np.array([names.index(name) for name in choice])
+        numbers = chosen[_streams(point)["meshes"].integers(len(choice), size=count)]
+    for body, given in enumerate(bodies or ()):
+        if given.mesh is not None:
+            numbers[body] = names.index(given.mesh)
+    return numbers
 
 
-def _launched(point: Point) -> Bodies:
-    scene, count, rng = point.scene, point.scene.count or 0, _streams(point)
-    sizes = _sizes(point)
+def _sizes(point: Point, files: SceneFiles, mesh_of: Ints) -> Floats:
+    """(n,) m, of random bodies."""
+    if point.scene.size.is_native:
+        return _diameters(files.meshes)[mesh_of]
+    return point.scene.size.sample(_streams(point)["sizes"], len(mesh_of))
+
+
+def _explicit_sizes(point: Point, files: SceneFiles, mesh_of: Ints) -> Floats:
+    """(n,) m, of bodies that are given one by one."""
+    given = point.scene.bodies or ()
+    native = _diameters(files.meshes)[mesh_of] if files.meshes else np.ones(len(given))
+    sizes = [size if isinstance(body.size, str) else body.size for body, size in zip(given, native, strict=False)]
+    return np.array(sizes, np.float64)
+
+
+def _diameters(meshes: tuple[Mesh, ...]) -> Floats:
+    return np.array([mesh.diameter for mesh in meshes])
+
+
+def _launched(point: Point, files: SceneFiles, mesh_of: Ints) -> Bodies:
+    scene, count, rng = point.scene, len(mesh_of), _streams(point)
+    sizes = _sizes(point, files, mesh_of)
     speeds, spins = scene.speed.sample(rng["speeds"], count), scene.spin.sample(rng["spins"], count)
     return Bodies(
-        positions=place(sizes / 2, box_of(point), rng["places"], overlap=scene.overlap == "allow"),
+        positions=place(sizes / 2, box_of(point, files), rng["places"], overlap=scene.overlap == "allow"),
         velocities=directions(rng["directions"], count) * speeds[:, None],
         quaternions=orientations(rng["orientations"], count),
         spins=directions(rng["axes"], count) * spins[:, None],
@@ -108,17 +169,26 @@ def _launched(point: Point) -> Bodies:
     )
 
 
-def _explicit(point: Point) -> Bodies:
+def _explicit(point: Point, files: SceneFiles, mesh_of: Ints) -> Bodies:
     bodies = point.scene.bodies or ()
+    sizes = _explicit_sizes(point, files, mesh_of)
     quaternions = np.array([body.orientation for body in bodies], np.float64).reshape(-1, 4)
+    masses = [size**3 if body.mass is None else body.mass for body, size in zip(bodies, sizes, strict=True)]
     return Bodies(
         positions=np.array([body.position for body in bodies], np.float64).reshape(-1, 3),
         velocities=np.array([body.velocity for body in bodies], np.float64).reshape(-1, 3),
         quaternions=quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True),
         spins=np.array([body.spin for body in bodies], np.float64).reshape(-1, 3),
-        sizes=np.array([body.size for body in bodies], np.float64),
-        masses=np.array([body.size**3 if body.mass is None else body.mass for body in bodies], np.float64),
+        sizes=sizes,
+        masses=np.array(masses, np.float64),
     )
+
+
+def _ignored(point: Point) -> Ints:
+    """(k, 2): the pairs that are never asked about, i < j, sorted, each once."""
+    pairs = np.array(point.scene.ignore, np.int64).reshape(-1, 2)
+    ordered: Ints = np.unique(np.sort(pairs, axis=1), axis=0)
+    return ordered
 
 
 def _refuse_too_large(count: int, memory: int | None) -> None:

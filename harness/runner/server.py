@@ -21,6 +21,8 @@ from harness.runner.isolation import run_isolated
 from harness.runner.task import Task
 from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
+from harness.scene.recorded_poses import RecordedPoses
+from harness.scene.scene_files import SceneFiles
 
 
 def main() -> None:
@@ -48,15 +50,15 @@ def _prepare(channel: Connection, backend: str) -> None:
 
 
 def _serve(channel: Connection) -> None:
-    meshes: dict[str, Mesh] = {}
+    held: dict[str, Mesh | RecordedPoses] = {}
     while True:
         received = channel.recv()
-        if isinstance(received, Mesh):
-            meshes[received.digest] = received
+        if isinstance(received, Mesh | RecordedPoses):
+            held[received.identity] = received
             continue
         _warm_up(received)
         channel.send("warm")
-        report = run_isolated(received, None if received.mesh is None else meshes[received.mesh], channel)
+        report = run_isolated(received, SceneFiles.of(tuple(held[identity] for identity in received.files)), channel)
         if report is None:
             return
         channel.send(report)

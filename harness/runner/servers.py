@@ -13,10 +13,8 @@ import socket
 import struct
 import subprocess
 import uuid
-from collections.abc import Mapping
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from pathlib import Path
 from time import monotonic
 from types import TracebackType
 from typing import Any
@@ -30,7 +28,7 @@ from harness.measure.metrics import ON_DEMAND
 from harness.process_limits import interrupts_blocked
 from harness.python_child import python_command
 from harness.runner.task import Report, Task
-from harness.scene.mesh import Mesh
+from harness.scene.scene_files import Opened, SceneFiles
 
 # One thread a run: threads of numerical libraries would make CPU time mean something else on every machine.
 _ONE_THREAD = dict.fromkeys(
@@ -78,13 +76,13 @@ class Servers:
         for server in list(self._servers.values()):
             server.hang_up()
 
-    def run(self, task: Task, mesh: Mesh | None) -> Report:
+    def run(self, task: Task, files: SceneFiles) -> Report:
         """Run a task once in a process of its own; it never raises for what the run does.
 
         Parameters
         ----------
         task : what to run
-        mesh : that it names
+        files : that its scene names
         """
         backend = task.point.engine.backend
         interruptions = self._interruptions
@@ -92,7 +90,7 @@ class Servers:
         for tried in range(1, _TRIES_IF_KILLED + 1):
             if backend in self._broken:
                 return self._broken[backend]
-            report, ending = self._try(backend, task, mesh, tried)
+            report, ending = self._try(backend, task, files, tried)
             if report is not None:
                 return report
             if self._interruptions > interruptions or _enough(tried, ending):
@@ -100,7 +98,7 @@ class Servers:
         how = ending.instead_of("a report") if ending is not None and ending.code else "gave no report"
         return Report("crashed", f'the server of backend "{backend}" {how}')
 
-    def _try(self, backend: str, task: Task, mesh: Mesh | None, tried: int) -> tuple[Report | None, Ending | None]:
+    def _try(self, backend: str, task: Task, files: SceneFiles, tried: int) -> tuple[Report | None, Ending | None]:
         """The report of a task; without one, how the server ended, if by itself, that died or was silent over it."""
         if backend in self._servers and self._servers[backend].dead:  # this run has nothing to do with that
             self._servers.pop(backend).close()
@@ -116,7 +114,7 @@ class Servers:
                     self._broken[backend] = broken
                 return broken, server.ending
         server = self._servers[backend]
-        report = server.run(task, mesh)
+        report = server.run(task, files)
         if report is None:
             self._servers.pop(backend).close()
         return report, server.ending
@@ -135,21 +133,21 @@ def _killed(ending: Ending | None) -> bool:
 def task_of(
     experiment: Experiment,
     point: Point,
-    meshes: Mapping[Path, Mesh],
+    meshes: Opened,
     *,
     traced: bool = False,
     pinned: bool = False,
     recorded: bool = False,
     on_demand: frozenset[str] | None = None,
-) -> tuple[Task, Mesh | None]:
-    """A run of a point under the limits of its experiment, and the mesh that it needs.
+) -> tuple[Task, SceneFiles]:
+    """A run of a point under the limits of its experiment, and the files that it needs.
 
     `on_demand` are the metrics to measure that are measured on demand alone; without, those the experiment names.
     """
-    mesh, limits = mesh_of(experiment, point, meshes), experiment.measure
+    files, limits = files_of(experiment, point, meshes), experiment.measure
     on_demand = on_demand_of(experiment) if on_demand is None else on_demand
-    digest = mesh.digest if mesh else None
-    return Task(point, digest, limits.timeout, limits.memory, traced, pinned, recorded, on_demand), mesh
+    task = Task(point, files.identities, limits.timeout, limits.memory, traced, pinned, recorded, on_demand)
+    return task, files
 
 
 def on_demand_of(experiment: Experiment) -> frozenset[str]:
@@ -157,9 +155,10 @@ def on_demand_of(experiment: Experiment) -> frozenset[str]:
     return experiment.metrics & ON_DEMAND
 
 
-def mesh_of(experiment: Experiment, point: Point, meshes: Mapping[Path, Mesh]) -> Mesh | None:
-    """The mesh that a point of an experiment names, if it names one."""
-    return None if point.scene.mesh is None else meshes[experiment.mesh_paths[point.scene.mesh]]
+def files_of(experiment: Experiment, point: Point, opened: Opened) -> SceneFiles:
+    """The files that a point of an experiment names."""
+    paths = [experiment.mesh_paths[name] for name in point.scene.mesh_names]
+    return SceneFiles.of(tuple(opened[path] for path in paths))
 
 
 class _Server:
@@ -219,12 +218,13 @@ class _Server:
         self._ready = True
         return None
 
-    def run(self, task: Task, mesh: Mesh | None) -> Report | None:
+    def run(self, task: Task, files: SceneFiles) -> Report | None:
         """The report of a task; None if the server has died, or is silent."""
         try:
-            if mesh is not None and mesh.digest not in self._sent:
-                self._channel.send(mesh)
-                self._sent.add(mesh.digest)
+            for part in files.parts:
+                if part.identity not in self._sent:
+                    self._channel.send(part)
+                    self._sent.add(part.identity)
             self._channel.send(task)
             self._receive(_WARM_UP)
             report: Report = self._receive(task.timeout + _BEYOND)

@@ -26,9 +26,9 @@ from harness.runner.key import point_key
 from harness.runner.recording import worth_recording
 from harness.runner.scene_of_point import derived_parameters
 from harness.runner.schedule import Job, RunSelection, Schedule, schedule
-from harness.runner.servers import Servers, mesh_of, on_demand_of, task_of
+from harness.runner.servers import Servers, files_of, on_demand_of, task_of
 from harness.runner.task import Report
-from harness.scene.mesh import Mesh
+from harness.scene.scene_files import Opened, SceneFiles
 from harness.store.database import Database
 from harness.store.history import History
 from harness.store.records import PointRow, RunRecord, VerdictKind, VerdictRow
@@ -37,7 +37,7 @@ from harness.store.tables import controls, run_records, run_table, runs
 if TYPE_CHECKING:
     import pandas as pd
 
-Meshes = Mapping[Path, Mesh]
+Meshes = Opened
 
 
 @dataclass
@@ -129,9 +129,9 @@ def work_of(
     lacking = {name: why for name in backends if (why := missing(name)) is not None}
     for experiment in experiments:
         for point in experiment.points:
-            mesh = mesh_of(experiment, point, meshes)
-            key = keys[id(point)] = point_key(point, mesh)
-            parameters[key] = _parameters(point, mesh)
+            files = files_of(experiment, point, meshes)
+            key = keys[id(point)] = point_key(point, files)
+            parameters[key] = _parameters(point, files)
             on_demand[key] |= on_demand_of(experiment)
     wanted = {key for key, found in parameters.items() if selection.wants(found)}
     if selection.only and parameters and not wanted:
@@ -268,18 +268,18 @@ def run(experiment: Experiment, meshes: Meshes) -> pd.DataFrame:
     with Servers() as servers:
         for repeat in range(experiment.measure.repeats):
             for point in experiment.points:
-                task, mesh = task_of(experiment, point, meshes, pinned=True)
-                report = servers.run(task, mesh)
+                task, files = task_of(experiment, point, meshes, pinned=True)
+                report = servers.run(task, files)
                 records.append(
                     RunRecord(
                         experiment=experiment.name,
-                        point=point_key(point, mesh),
+                        point=point_key(point, files),
                         repeat=repeat,
                         status=report.status,
                         reason=report.reason,
                         sweep=0,
                         timing_grade=True,
-                        parameters=_parameters(point, mesh),
+                        parameters=_parameters(point, files),
                         metrics=report.metrics,
                     )
                 )
@@ -308,8 +308,8 @@ def trace(experiment: Experiment, meshes: Meshes) -> Trace:
     return report.trace
 
 
-def _parameters(point: Point, mesh: Mesh | None) -> dict[str, Any]:
-    return {**point.parameters, **derived_parameters(point, mesh)}
+def _parameters(point: Point, files: SceneFiles) -> dict[str, Any]:
+    return {**point.parameters, **derived_parameters(point, files)}
 
 
 def _listing(experiment: Experiment, work: Work, meshes: Meshes) -> dict[str, Any]:
@@ -331,7 +331,7 @@ def _listing(experiment: Experiment, work: Work, meshes: Meshes) -> dict[str, An
             "lacking": {name: why for name, why in work.lacking.items() if name in named},
         },
         "points": [
-            PointRow(work.keys[id(point)], _parameters(point, mesh_of(experiment, point, meshes)))
+            PointRow(work.keys[id(point)], _parameters(point, files_of(experiment, point, meshes)))
             for point in experiment.points
         ],
     }

@@ -19,7 +19,7 @@ class Task:
     Parameters
     ----------
     point : Point
-    mesh : digest of its mesh, if it has one
+    files : identities of the files that its scene names, in the order of `SceneFiles.parts`
     timeout : s of elapsed time
     memory : B that it may use
     traced : keep every hit
@@ -29,7 +29,7 @@ class Task:
     """
 
     point: Point
-    mesh: str | None
+    files: tuple[str, ...]
     timeout: float
     memory: int
     traced: bool = False

@@ -42,12 +42,13 @@ def warm_up(point: Point) -> bool:
 def warm_ups(point: Point) -> Iterator[WarmUp]:
     """What has to be compiled before a run of a point."""
     yield "placement", _compile_placement
-    yield from method_of_point(point).warm_ups()
+    yield from method_of_point(point).warm_ups(len(point.scene.mesh_names))
     if point.reference is not None:
         shape = point.reference.shape
+        # its kernels take the meshes of two bodies, and are the same however many there are
         yield f"reference of {shape}s", partial(_compile_reference, shape)
         if point.motion.response != "none":  # the reference has to be flown
-            yield from method_of_point(accuracy.reference_point(point)).warm_ups()
+            yield from method_of_point(accuracy.reference_point(point)).warm_ups(len(point.scene.mesh_names))
 
 
 def _compile_placement() -> None:

@@ -54,6 +54,11 @@ class Mesh:
     diameter: float = 1.0
     flat: bool = False
 
+    @property
+    def identity(self) -> str:
+        """By which two meshes are the same, and as large in their files: a size may be native."""
+        return f"{self.digest} {self.diameter!r}"
+
 
 THIN = 2.0**-50
 """A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of it."""

@@ -65,7 +65,8 @@ class Recording:
     half_box : (3,) m
     sizes : (n,) m, diameters of bounding spheres
     quaternions, spins : (n, 4) and (n, 3), rad/s; a body is turned by exp(spin t) quaternion
-    surface : the mesh that all bodies share, scaled by their sizes; None for spheres
+    surfaces : the meshes that bodies have, scaled by their sizes; none for spheres
+    surface_of : (n,) which of them each body has
     leg_times, leg_bodies : (m,) s and body numbers, in the order of time; the first n are the bodies at time 0
     leg_positions, leg_velocities : (m, 3) m and m/s
     hit_times, hit_bodies, hit_walls : (k,) s, (k, 2) body numbers, the second -1 at a wall, and (k,) numbers of walls,
@@ -81,7 +82,8 @@ class Recording:
     sizes: Floats
     quaternions: Floats
     spins: Floats
-    surface: Surface | None
+    surfaces: tuple[Surface, ...]
+    surface_of: Ints
     leg_times: Floats
     leg_bodies: Ints
     leg_positions: Floats
@@ -98,15 +100,17 @@ class Recording:
 
 def write(connection: sqlite3.Connection, run: int, recording: Recording) -> None:
     """Keep the recording of a run, inside the caller's transaction."""
-    facts = {
+    facts: dict[str, Any] = {
         "shape": recording.shape,
         "duration": recording.duration,
         "dt": recording.dt,
         "half_box": recording.half_box.tolist(),
         **_facts_of_query(recording),
     }
-    surface = recording.surface
-    if surface is not None:
+    digests = [surface.digest for surface in recording.surfaces]
+    if len(digests) > 1:
+        facts |= {"meshes": digests, "mesh_of": recording.surface_of.tolist()}
+    for surface in recording.surfaces:
         connection.execute(
             "INSERT INTO mesh (digest, name, vertices, faces) VALUES (?, ?, ?, ?) ON CONFLICT (digest) DO NOTHING",
             (
@@ -119,7 +123,7 @@ def write(connection: sqlite3.Connection, run: int, recording: Recording) -> Non
     bodies = np.column_stack([recording.sizes, recording.quaternions, recording.spins])
     connection.execute(
         "INSERT INTO recording (run, facts, bodies, mesh) VALUES (?, ?, ?, ?)",
-        (run, json.dumps(facts), bodies.astype("<f8").tobytes(), surface.digest if surface else None),
+        (run, json.dumps(facts), bodies.astype("<f8").tobytes(), digests[0] if digests else None),
     )
     connection.executemany(
         "INSERT INTO event (run, place, time, kind, first, second, wall) VALUES (?, ?, ?, ?, ?, ?, ?)",
@@ -218,6 +222,7 @@ def _read(
     legs = [np.frombuffer(data, "<f8").reshape(-1, 7) for _, data in frames]
     rows = np.concatenate([*legs, np.empty((0, 7))])
     each = np.frombuffer(bodies, "<f8").reshape(-1, 8)
+    digests = facts.get("meshes", [] if digest is None else [digest])
     return Recording(
         shape=facts["shape"],
         duration=facts["duration"],
@@ -226,7 +231,8 @@ def _read(
         sizes=each[:, 0],
         quaternions=each[:, 1:5],
         spins=each[:, 5:],
-        surface=None if digest is None else _surface(connection, digest),
+        surfaces=tuple(_surface(connection, name) for name in digests),
+        surface_of=np.array(facts.get("mesh_of", [0] * len(each)), np.int64),
         leg_times=np.repeat([time for time, _ in frames], [len(leg) for leg in legs]).astype(np.float64),
         leg_bodies=rows[:, 0].astype(np.int64),
         leg_positions=rows[:, 1:4],

@@ -101,9 +101,9 @@ CREATE TABLE frame (
 -- What a replay shows, of a run whose scene was flown once more for it; its hits are in `event`, its legs in `frame`.
 CREATE TABLE recording (
     run    INTEGER PRIMARY KEY REFERENCES run,
-    facts  TEXT NOT NULL,                   -- JSON, {shape, duration, dt, half_box}
+    facts  TEXT NOT NULL,                   -- JSON, {shape, duration, dt, half_box}; of several meshes {meshes: digests, mesh_of} too
     bodies BLOB NOT NULL,                   -- little-endian doubles, a row a body: size, quaternion w x y z, spin x y z
-    mesh   TEXT REFERENCES mesh             -- NULL for spheres without one
+    mesh   TEXT REFERENCES mesh             -- the first of several; NULL for spheres
 );
 
 CREATE TABLE mesh (

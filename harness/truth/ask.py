@@ -10,7 +10,7 @@ import numpy as np
 
 from harness.arrays import Ints
 from harness.backends.statement import missing
-from harness.child_process import Channel, Child
+from harness.child_process import Channel, Child, guarded
 from harness.truth.answerers import Answer, Question, answerer
 from harness.truth.case_scene import CaseScenes
 from harness.truth.folder import TruthSet
@@ -62,7 +62,7 @@ def _answers(
     """Each case with what was told of it, or why nothing was; a process that fails is started anew behind its case."""
     place = 0
     while place < len(rows):
-        with Child.fork(partial(_serve, question, scenes, rows[place:])) as child:
+        with Child.fork(guarded(partial(_serve, question, scenes, rows[place:]))) as child:
             while place < len(rows):
                 message = child.receive(timeout)
                 row, place = rows[place], place + 1

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
-from harness.arrays import Floats
 from harness.backends.poses import Motion
-from harness.errors import InputError
 from harness.pair.body import Body
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
-from harness.scene.mesh import Mesh, Surface
+from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 from harness.truth.cases import Cases
 from harness.truth.engine_mesh import engine_mesh
@@ -97,24 +93,13 @@ class CaseScenes:
     def scene(self, row: int) -> Scene:
         """A scene of the two bodies of a case."""
         motion, kind, shape = self.motion(row), self.kind(row), self.shape(row)
-        sizes = kind.sizes
-        if kind.solids[0] != kind.solids[1] and sizes[0] == sizes[1]:
-            # a backend tells bodies apart by their sizes; what it gets for this one has the true size
-            sizes = sizes[0], float(np.nextafter(sizes[1], np.inf))
         bodies = Bodies(
-            motion.positions, motion.velocities, motion.quaternions, motion.spins, np.array(sizes), np.ones(2)
+            motion.positions, motion.velocities, motion.quaternions, motion.spins, np.array(kind.sizes), np.ones(2)
         )
-        box = Box(np.full(3, _FARTHEST))
-        if shape == "sphere":
-            return Scene(shape, None, bodies, box)
-        surfaces = [self._solids[solid].surface for solid in kind.solids]
-        solids = {
-            label: Surface(surface.vertices * size, surface.faces)
-            for label, surface, size in zip(sizes, surfaces, kind.sizes, strict=True)
-        }
-        alike = kind.solids[0] == kind.solids[1]
-        mesh = self._mesh(kind.solids[0]) if alike else cast(Mesh, _NoCommonMesh())
-        return _PairScene(shape, mesh, bodies, box, solids=solids)
+        solids = list(dict.fromkeys(kind.solids))
+        meshes = [mesh for mesh in map(self._mesh, solids) if mesh is not None]
+        numbers = np.array([solids.index(solid) for solid in kind.solids])
+        return Scene(shape, tuple(meshes), bodies, Box(np.full(3, _FARTHEST)), mesh_of=numbers)
 
     def _mesh(self, solid: int) -> Mesh | None:
         if self._solids[solid].shape == "sphere":
@@ -122,41 +107,3 @@ class CaseScenes:
         if solid not in self._meshes:
             self._meshes[solid] = engine_mesh(self._solids[solid].mesh, self._solids[solid].surface)
         return self._meshes[solid]
-
-
-@dataclass(frozen=True, eq=False)
-class _PairScene(Scene):
-    """A scene whose two bodies may have meshes of their own, of any unit.
-
-    Parameters
-    ----------
-    solids : by the size of a body, m: its hull or its mesh, in m
-    """
-
-    solids: Mapping[float, Surface] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        """Nothing is to be checked: the set has been read."""
-
-    def solid_of(self, size: float) -> Surface:
-        return self.solids[size]
-
-    @property
-    def enclosing_radii(self) -> Floats:
-        reach = [np.linalg.norm(self.solids[size].vertices, axis=1).max() for size in self.bodies.sizes.tolist()]
-        return np.maximum(self.bodies.radii, reach)
-
-
-class _NoCommonMesh:
-    """Stands where a scene has the mesh of all its bodies; a backend that looks into it would answer for other bodies.
-
-    Raises
-    ------
-    InputError
-        For whatever it is asked.
-    """
-
-    flat = False  # `scene` makes hulls of solids alone
-
-    def __getattr__(self, name: str) -> Any:
-        raise InputError("it takes both bodies to have the same mesh")

@@ -123,7 +123,7 @@ def test_first_contact_and_the_distance_asked_for_decide(backend, shape):
     }  # fmt: skip
     for gap, is_near in expected.items():
         bodies = make_bodies([[0, 0, 0], [width + gap, 0, 0]])
-        found = near_pairs(backend, Scene(shape, cube_mesh(), bodies, Box(np.full(3, 2e3))), 0.25)
+        found = near_pairs(backend, Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 2e3))), 0.25)
         assert len(found.pairs) == is_near
         if is_near:
             assert abs(found.gaps[0] - max(gap, 0.0)) <= max(1e-15, band)
@@ -134,7 +134,7 @@ def test_a_body_inside_another_is_at_no_gap_as_a_solid_and_at_that_of_the_surfac
     for shape in ("hull", "mesh"):
         if shape not in backend.shapes or (backend.name, shape) in GAPLESS:
             continue
-        found = near_pairs(backend, Scene(shape, cube_mesh(), bodies, Box(np.full(3, 5.0))), 1.0)
+        found = near_pairs(backend, Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 5.0))), 1.0)
         solid = shape == "hull" or "mesh" in getattr(backend, "solid", ()) or own_hulls(backend)
         gap = 0.0 if solid else (1.0 - 0.2) / np.sqrt(12) - 0.01
         assert found.gaps.tolist() == pytest.approx([gap], abs=1e-12)

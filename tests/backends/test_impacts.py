@@ -78,7 +78,7 @@ def two(shape, gap, velocity, spin=0.0):
     bodies = make_bodies(
         [[0, 0, 0], [width + gap, aside, 0]], [[velocity, 0, 0], [0, 0, 0]], spins=[[spin, 0, 0], [0, 0, 0]]
     )
-    return Scene(shape, cube_mesh(), bodies, Box(np.full(3, 50.0)))
+    return Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 50.0)))
 
 
 def test_a_straight_flight_ends_when_the_closed_form_says(asked):
@@ -120,8 +120,8 @@ def casts(monkeypatch):
             return 0.5
 
         monkeypatch.setattr(rapier_casts, "_cast", cast)
-        shapes = {1.0: rapier_casts.ShapeData(0.5, [], [])}
-        return rapier_casts.Casts(shapes, np.ones(3), 1.0, longest=0.4)
+        shapes = {(0, 1.0): rapier_casts.ShapeData(0.5, [], [])}
+        return rapier_casts.Casts(shapes, [(0, 1.0)] * 3, 1.0, longest=0.4)
 
     return make
 

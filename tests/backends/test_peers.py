@@ -56,7 +56,7 @@ def test_a_peer_keeps_to_the_band_it_states(peer, shape, size):
     for gap, hits in ((band, []), (-band, [[0, 1]])):
         positions = np.array([[0, 0, 0], [width + gap, 0, 0]]) * size
         bodies = make_bodies(positions, sizes=[size, size])
-        assert touching(peer(), Scene(shape, cube_mesh(), bodies, Box(np.full(3, 9 * size)))) == hits
+        assert touching(peer(), Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 9 * size)))) == hits
 
 
 def test_a_peer_says_what_it_is(peer):

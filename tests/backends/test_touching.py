@@ -34,7 +34,7 @@ def two_at(gap, shape, name, *, size=1.0, offset=0.0):
     positions = np.array([[offset, 0, 0], [offset + width + gap, 0.01, 0.02]]) * size
     if shape == "sphere":
         positions[1, 1:] = 0.0
-    scene = Scene(shape, cube_mesh(), make_bodies(positions, sizes=[size, size]), Box(np.full(3, 100.0 * size)))
+    scene = Scene(shape, (cube_mesh(),), make_bodies(positions, sizes=[size, size]), Box(np.full(3, 100.0 * size)))
     return touching(name, scene)
 
 
@@ -78,14 +78,14 @@ def test_brute_force_puts_every_pair_to_fcl():
 
 def test_a_mesh_inside_another_touches_it_only_at_the_surface():
     bodies = make_bodies([[0, 0, 0], [0.01, 0, 0]], sizes=[1.0, 0.2])
-    assert touching("fcl", Scene("mesh", cube_mesh(), bodies, Box(np.full(3, 5.0)))) == []
-    assert touching("fcl", Scene("hull", cube_mesh(), bodies, Box(np.full(3, 5.0)))) == [[0, 1]]
+    assert touching("fcl", Scene("mesh", (cube_mesh(),), bodies, Box(np.full(3, 5.0)))) == []
+    assert touching("fcl", Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 5.0)))) == [[0, 1]]
 
 
 def test_sizes_scale_the_shape():
     for gap, hits in ((1e-9, []), (-1e-9, [[0, 1]])):
         bodies = make_bodies([[0, 0, 0], [2.0 / np.sqrt(3) + gap, 0, 0]], sizes=[1.0, 3.0])
-        assert touching("fcl", Scene("mesh", cube_mesh(), bodies, Box(np.full(3, 9.0)))) == hits
+        assert touching("fcl", Scene("mesh", (cube_mesh(),), bodies, Box(np.full(3, 9.0)))) == hits
 
 
 def test_a_pose_that_is_not_finite_is_refused_before_fcl_sees_it():
@@ -108,13 +108,13 @@ def test_small_hulls_among_large_ones_are_judged_to_rounding():
     for gap, hits in ((1e-9, []), (-1e-9, [[0, 1]])):
         positions = [[0, 0, 0], [small * (width + gap), small * 0.01, 0], *([3.0 + 2 * k, 5, 5] for k in range(5))]
         bodies = make_bodies(positions, sizes=[small, small, 1, 1, 1, 1, 1])
-        assert touching("fcl", Scene("hull", cube_mesh(), bodies, Box(np.full(3, 40.0)))) == hits
+        assert touching("fcl", Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 40.0)))) == hits
 
 
 def test_the_tolerance_of_fcl_depends_on_how_unlike_the_hulls_are():
     for ratio, tolerance in ((256.0, 1e-11), (2000.0, 1e-4)):
         bodies = make_bodies([[0, 0, 0], [3 * ratio, 0, 0]], sizes=[1.0, ratio])
-        backend = load("fcl", Scene("hull", cube_mesh(), bodies, Box(np.full(3, 9.0 * ratio))))
+        backend = load("fcl", Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 9.0 * ratio))))
         assert backend.tolerance("hull") == tolerance
         assert backend.tolerance("mesh") == 1e-14
 
@@ -122,7 +122,7 @@ def test_the_tolerance_of_fcl_depends_on_how_unlike_the_hulls_are():
 @pytest.mark.slow
 def test_hulls_with_tiny_edges_are_judged_to_the_declared_tolerance():
     mesh = mesh_named("package:pybullet_data/lego/lego_vhacd.obj")
-    (pose_set,) = list(hard_poses("hull", mesh))[:1]
+    (pose_set,) = list(hard_poses("hull", (mesh,)))[:1]
     backend = load("fcl", pose_set.scene)
     wrong = []
     for pose in pose_set.poses(pose_set.scene):
@@ -141,7 +141,7 @@ def test_a_face_without_area_changes_no_verdict_of_fcl():
     for gap, hits in ((1e-7, []), (1e-9, []), (1e-12, []), (-1e-12, [[0, 1]])):
         bodies = make_bodies([[0, 0, 0], [width + gap, 0.01, 0.02]])
         for one in (mesh, with_thin):
-            assert touching("fcl", Scene("mesh", one, bodies, Box(np.full(3, 4.0)))) == hits
+            assert touching("fcl", Scene("mesh", (one,), bodies, Box(np.full(3, 4.0)))) == hits
 
 
 @pytest.mark.parametrize(

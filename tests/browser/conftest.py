@@ -11,7 +11,7 @@ import pytest
 from harness.experiment.load import load_text
 from harness.report.site import write_report
 from harness.runner.execute import execute
-from harness.runner.servers import mesh_of
+from harness.runner.servers import files_of
 from harness.scene.mesh_child import open_all
 from harness.store.database import Database
 from harness.store.recording import Recording
@@ -48,8 +48,8 @@ def record(text: str) -> Recording:
     """The recording of an experiment's first point, flown in this process."""
     experiment = load_text(text, Path("browser.yaml"))
     point = experiment.points[0]
-    mesh = mesh_of(experiment, point, open_all(experiment.mesh_paths.values()))
-    recording = execute(point, mesh, recorded=True).recording
+    files = files_of(experiment, point, open_all(experiment.mesh_paths.values()))
+    recording = execute(point, files, recorded=True).recording
     assert recording is not None
     return recording
 

@@ -237,7 +237,7 @@ def test_the_viewer_puts_bodies_where_the_run_had_them(replay, name, request):
     for time, (places, turns) in zip(times, found, strict=True):
         expected = np.array([position(recording, body, time)[0] for body in range(len(recording))])
         assert np.abs(np.reshape(places, (-1, 3)) - expected).max() < 1e-6
-        if recording.surface is not None:
+        if recording.surfaces:
             start = Rotation.from_quat(recording.quaternions, scalar_first=True)
             ours = Rotation.from_quat(np.reshape(turns, (-1, 4)), scalar_first=True)
             assert ((Rotation.from_rotvec(recording.spins * time) * start).inv() * ours).magnitude().max() < 1e-5

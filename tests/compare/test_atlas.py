@@ -23,7 +23,7 @@ from tests.conftest import cube_mesh
 def poses(family, shape="hull", count=24):
     return [
         (pose_set.scene, pose)
-        for pose_set in family_poses(family, shape, cube_mesh(), count)
+        for pose_set in family_poses(family, shape, (cube_mesh(),), count)
         for pose in pose_set.poses(pose_set.scene)
     ]
 

@@ -13,7 +13,7 @@ from tests.conftest import cube_mesh, make_bodies
 
 
 def test_a_section_cuts_both_bodies_where_they_meet():
-    scene = Scene("hull", cube_mesh(), make_bodies([[0, 0, 0], [0.7, 0, 0]]), Box(np.full(3, 2.0)))
+    scene = Scene("hull", (cube_mesh(),), make_bodies([[0, 0, 0], [0.7, 0, 0]]), Box(np.full(3, 2.0)))
     pose = Pose("here", scene.bodies.positions, scene.bodies.quaternions)
     case = Case(("a", "b"), "b", (0, 1), judge(scene, 0, 1, pose.positions, pose.quaternions), scene, pose, 1)
     first, second = (np.array(cut) for cut in cross_section(case))

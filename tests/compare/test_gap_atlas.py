@@ -49,7 +49,7 @@ def test_gaps_that_are_one_percent_too_long_are_found_wherever_bodies_are_apart(
 
 def test_a_gap_is_at_most_itself_to_the_last_bit():
     for shape in ("sphere", "hull", "mesh"):
-        for pose_set in family_poses("random", shape, cube_mesh(), 6):
+        for pose_set in family_poses("random", shape, (cube_mesh(),), 6):
             for pose in pose_set.poses(pose_set.scene):
                 truth = ExactGap(pose_set.scene, pose)
                 truth.check()
@@ -64,7 +64,7 @@ def test_of_two_cubes_on_an_axis_the_gap_is_what_is_between_their_faces():
 
     import numpy as np
 
-    (pose_set,) = family_poses("random", "hull", cube_mesh(), 1)
+    (pose_set,) = family_poses("random", "hull", (cube_mesh(),), 1)
     (pose,) = pose_set.poses(pose_set.scene)
     apart = replace(pose, positions=np.array([[0.0, 0, 0], [1.5, 0, 0]]), quaternions=np.eye(4)[[0, 0]])
     side = 2 * float(pose_set.scene.solid_of(1.0).vertices[:, 0].max())

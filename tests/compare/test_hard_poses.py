@@ -13,7 +13,7 @@ from tests.conftest import cube_mesh, random_scene
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 def test_first_contacts_are_as_far_apart_as_they_say(shape):
     seen = set()
-    for pose_set in hard_poses(shape, cube_mesh()):
+    for pose_set in hard_poses(shape, (cube_mesh(),)):
         sizes = pose_set.scene.bodies.sizes
         for pose in pose_set.poses(pose_set.scene)[:: 1 if shape == "sphere" else 7]:
             if ", gap " not in pose.name:
@@ -31,7 +31,7 @@ def test_first_contacts_are_as_far_apart_as_they_say(shape):
 
 @pytest.mark.slow
 def test_the_same_poses_are_made_every_time():
-    once, again = (list(hard_poses("hull", cube_mesh())) for _ in range(2))
+    once, again = (list(hard_poses("hull", (cube_mesh(),))) for _ in range(2))
     for one, other in zip(once, again, strict=True):
         for pose, same in zip(one.poses(one.scene), other.poses(other.scene), strict=True):
             assert pose.name == same.name
@@ -43,7 +43,7 @@ def test_the_same_poses_are_made_every_time():
 def test_some_small_bodies_lie_inside_large_ones():
     inside = [
         judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions).contained
-        for pose_set in hard_poses("mesh", cube_mesh())
+        for pose_set in hard_poses("mesh", (cube_mesh(),))
         for pose in pose_set.poses(pose_set.scene)
         if pose.name.startswith("centres")
     ]

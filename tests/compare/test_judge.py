@@ -18,7 +18,7 @@ def two(shape, offset, *, sizes=(1.0, 1.0), at=0.0, quaternions=None):
     positions = np.array([[at, 0.0, 0.0], [at, 0.0, 0.0]])
     positions[1] += offset
     bodies = make_bodies(positions, sizes=sizes, quaternions=quaternions)
-    return judge(Scene(shape, cube_mesh(), bodies, Box(np.full(3, 9.0))), 0, 1, bodies.positions, bodies.quaternions)
+    return judge(Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, 9.0))), 0, 1, bodies.positions, bodies.quaternions)
 
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
@@ -81,7 +81,7 @@ def test_convex_surfaces_cross_where_their_hulls_touch():
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 def test_the_short_verdict_is_that_of_the_judge(shape):
-    for pose_set in list(hard_poses(shape, cube_mesh(), 31))[::3]:
+    for pose_set in list(hard_poses(shape, (cube_mesh(),), 31))[::3]:
         for pose in pose_set.poses(pose_set.scene):
             truth = judge(pose_set.scene, 0, 1, pose.positions, pose.quaternions)
             assert touches(pose_set.scene, 0, 1, pose.positions, pose.quaternions) == truth.touching

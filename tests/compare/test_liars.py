@@ -33,7 +33,7 @@ def test_a_liar_is_caught_and_nobody_else_is_accused(name, liar):
 
 
 def test_one_that_takes_near_poses_for_the_same_is_caught_at_the_small_steps(liar):
-    pose_set = next(iter(hard_poses("hull", cube_mesh())))
+    pose_set = next(iter(hard_poses("hull", (cube_mesh(),))))
     found = compare([pose_set], ["fcl", liar("caches")])
     assert named(found) == {"caches"}
 
@@ -70,7 +70,7 @@ def test_a_verdict_that_changes_is_called_what_it_is(name, kind, liar):
 @pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull"])
 def test_honest_backends_are_not_accused(shape):
-    sets = [flown(random_scene(shape, 16, 2.6, seed=4), 24, 1 / 60), *hard_poses(shape, cube_mesh(), 5)]
+    sets = [flown(random_scene(shape, 16, 2.6, seed=4), 24, 1 / 60), *hard_poses(shape, (cube_mesh(),), 5)]
     found = compare(sets, ["fcl", "fcl/grid", "pybullet"])
     wrong = [(case.wrong, case.pose.name, case.judgement.gap) for case in found.cases + found.shared]
     assert (wrong, found.failures) == ([], [])
@@ -84,7 +84,7 @@ def test_a_contact_that_is_over_is_none():
     from tests.conftest import make_bodies
 
     bodies = make_bodies([[0, 0, 0], [0.01, 0.02, 4]], [[0, 0, 0], [0, 0, -1]], sizes=[3, 1])
-    scene = Scene("hull", cube_mesh(), bodies, Box(np.full(3, 60.0)))
+    scene = Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 60.0)))
     backend = registry.create("pybullet")
     backend.load(scene)
     poses = flown(scene, 800, 0.01).poses(scene)[1:]

@@ -19,7 +19,7 @@ from tests.conftest import cube_mesh, make_bodies
 def test_a_defect_that_needs_many_bodies_is_reduced_to_those_it_needs(defective):
     name = defective("swaps")
     positions = [[0, 0, 0], [2, 0, 0], *([k, 3.0, 0] for k in range(4)), [0.4, 0.2, 0.1]]
-    scene = Scene("hull", cube_mesh(), make_bodies(positions), Box(np.full(3, 20.0)))
+    scene = Scene("hull", (cube_mesh(),), make_bodies(positions), Box(np.full(3, 20.0)))
     (case, *_) = disagreements(scene, Pose("here", scene.bodies.positions, scene.bodies.quaternions), ("fcl", name))
     small = minimise(case)
     assert len(small.scene.bodies) == 3

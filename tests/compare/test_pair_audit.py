@@ -20,7 +20,7 @@ def at_rest(scene):
 @pytest.mark.slow
 def test_two_that_are_wrong_together_are_found_by_the_judge(defective):
     names = (defective("blind"), defective("blind-too"))
-    scene = Scene("hull", cube_mesh(), make_bodies([[0, 0, 0], [0.3, 0, 0]]), Box(np.full(3, 2.0)))
+    scene = Scene("hull", (cube_mesh(),), make_bodies([[0, 0, 0], [0.3, 0, 0]]), Box(np.full(3, 2.0)))
     found = compare([at_rest(scene)], names)
     assert (found.cases, found.unsupported, found.failures) == ([], [], [])
     (case,) = found.shared
@@ -36,7 +36,7 @@ def test_two_that_are_wrong_together_are_found_by_the_judge(defective):
 def test_a_hull_for_a_mesh_is_measured_in_false_hits_and_misses():
     # a small one inside a large one touches its hull, but not its surface
     bodies = make_bodies([[0, 0, 0], [0.02, 0, 0], [2, 0, 0], [2.3, 0, 0]], sizes=[1.0, 0.2, 1.0, 1.0])
-    scene = Scene("mesh", cube_mesh(), bodies, Box(np.full(3, 4.0)))
+    scene = Scene("mesh", (cube_mesh(),), bodies, Box(np.full(3, 4.0)))
     found = compare([flown(scene, 0, 1.0)], ("fcl", "pybullet"))
     (one,) = found.approximations
     assert (one.backend, one.verdicts) == ("pybullet", 6)

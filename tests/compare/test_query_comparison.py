@@ -71,7 +71,7 @@ def test_a_liar_is_caught_and_nobody_else_is_accused(name, liar):
 def test_what_touches_when_a_frame_begins_is_not_asked_about():
     """Cubes that overlap at first: nothing is said of them until they have parted, so that nobody misses a hit."""
     bodies = make_bodies([[0, 0, 0], [0.3, 0, 0]], [[0, 0, 0], [1, 0, 0]])
-    scene = Scene("hull", cube_mesh(), bodies, Box(np.full(3, 9.0)))
+    scene = Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 9.0)))
     found = compare([flown(scene, 3, 0.5, IMPACT)], HONEST)
     assert named(found) == set()
 
@@ -79,7 +79,7 @@ def test_what_touches_when_a_frame_begins_is_not_asked_about():
 def test_a_time_of_impact_has_its_closed_form():
     """Cubes of side 1/√3 whose faces meet: at rest, and 1 m/s from 1 m away, so that they touch at 1 - 1/√3 s."""
     bodies = make_bodies([[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [-1, 0, 0]])
-    scene = Scene("hull", cube_mesh(), bodies, Box(np.full(3, 9.0)))
+    scene = Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 9.0)))
     (frame,) = flown(scene, 1, 0.5, IMPACT).poses(scene)
     late = Frame(*(getattr(frame, name) for name in ("name", "positions", "quaternions", "velocities", "spins")), 0.5)
     for asked in (frame, late):
@@ -91,7 +91,7 @@ def test_a_time_of_impact_has_its_closed_form():
 @pytest.mark.slow
 @pytest.mark.parametrize("question", [DISTANCE, NEAR, IMPACT], ids=lambda question: question.query)
 def test_hard_poses_of_hulls_accuse_no_kernel(question):
-    found = compare(hard_questions("hull", cube_mesh(), 29, question, 1.0), HONEST)
+    found = compare(hard_questions("hull", (cube_mesh(),), 29, question, 1.0), HONEST)
     assert named(found) == set()
 
 

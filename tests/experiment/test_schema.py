@@ -37,6 +37,7 @@ def test_everything_but_title_bodies_box_and_mesh_has_the_default_of_the_contrac
         "spin": {"uniform": [0.0, 3.0]},
         "overlap": "reject",
         "seed": 259,
+        "ignore": [],
         "duration": 10.0,
         "dt": 1 / 60,
         "response": "reflect",

@@ -34,7 +34,7 @@ def test_it_judges_the_hulls_it_is_given_also_where_they_stick_out_of_the_boundi
     crowd = random_scene("hull", 40, 2.6, seed=1)
     mesh = mesh_named("pumpkin-1753.ply")
     larger = convex_hull(mesh.hull.vertices * 1.2)
-    scene = Scene("hull", mesh, replace(crowd.bodies, sizes=np.ones(40)), crowd.box, hulls={1.0: larger})
+    scene = Scene("hull", (mesh,), replace(crowd.bodies, sizes=np.ones(40)), crowd.box, hulls={(0, 1.0): larger})
     found = pairs(AtPoses(MethodName("fcl", algorithm, "hull")), scene)
     assert found == pairs(registry.create("fcl"), scene)
     assert len(found) > len(pairs(registry.create("fcl"), replace(scene, hulls={})))

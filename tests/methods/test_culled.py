@@ -25,7 +25,7 @@ def test_the_pairs_are_those_of_brute_force(algorithm, shape, seed, side, ratio)
     scene = random_scene(shape, 30, side, seed)
     sizes = ratio ** -np.random.default_rng(seed).uniform(size=30)
     bodies = make_bodies(scene.bodies.positions, sizes=sizes, quaternions=scene.bodies.quaternions)
-    scene = Scene(shape, cube_mesh(), bodies, scene.box)
+    scene = Scene(shape, (cube_mesh(),), bodies, scene.box)
     assert answers(scene, algorithm)[0] == answers(scene, "brute-force")[0]
 
 
@@ -33,7 +33,7 @@ def test_the_pairs_are_those_of_brute_force(algorithm, shape, seed, side, ratio)
 @pytest.mark.parametrize("unit", [1.0, 0.1, 1 / 3])
 def test_spheres_on_a_lattice_that_just_touch_are_judged_to_the_bit(algorithm, unit):
     lattice = np.array([[x, y, z] for x in range(4) for y in range(4) for z in range(4)]) * unit
-    scene = Scene("sphere", None, make_bodies(lattice, sizes=np.full(64, unit)), Box(np.full(3, 4 * unit)))
+    scene = Scene("sphere", (), make_bodies(lattice, sizes=np.full(64, unit)), Box(np.full(3, 4 * unit)))
     assert answers(scene, algorithm)[0] == answers(scene, "brute-force")[0]
 
 

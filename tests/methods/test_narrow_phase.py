@@ -32,7 +32,7 @@ def test_in_a_crowd_the_pairs_are_those_of_brute_force(name, shape, seed, side, 
     mesh = mesh_named(name)
     scene = crowd(mesh, shape, 16, side, seed)
     bodies = make_bodies(scene.bodies.positions * size, sizes=np.full(16, size), quaternions=scene.bodies.quaternions)
-    assert_as_brute_force(Scene(shape, mesh, bodies, Box(np.full(3, side * size))))
+    assert_as_brute_force(Scene(shape, (mesh,), bodies, Box(np.full(3, side * size))))
 
 
 @pytest.mark.slow
@@ -56,7 +56,7 @@ def test_a_gap_or_an_overlap_of_1e_9_decides(name, shape):
 
         def two_at(gap, quaternions=quaternions, along=along):
             bodies = make_bodies([[0, 0, 0], along * gap], quaternions=quaternions)
-            return Scene(shape, mesh, bodies, Box(np.full(3, 2.0)))
+            return Scene(shape, (mesh,), bodies, Box(np.full(3, 2.0)))
 
         # the outermost contact along the line, as far as FCL tells it
         brute = detector(two_at(1.0), "brute-force")
@@ -85,7 +85,7 @@ def test_meshes_that_reach_into_each_others_hulls_are_told_apart(name):
     mesh, found = mesh_named(name), 0
     for seed in range(12):
         scene = crowd(mesh, "mesh", 24, 2.2, seed)
-        hulls = pairs(Scene("hull", mesh, scene.bodies, scene.box))
+        hulls = pairs(Scene("hull", (mesh,), scene.bodies, scene.box))
         meshes = pairs(scene)
         assert meshes == pairs(scene, "brute-force")
         found += len(hulls) - len(meshes)
@@ -115,7 +115,7 @@ def test_what_is_remembered_from_frame_to_frame_changes_no_answer(name, shape, r
 def test_bodies_on_top_of_each_other_touch():
     for shape in ("hull", "mesh"):
         bodies = make_bodies(np.zeros((3, 3)))
-        assert pairs(Scene(shape, cube_mesh(), bodies, Box(np.ones(3)))) == [[0, 1], [0, 2], [1, 2]]
+        assert pairs(Scene(shape, (cube_mesh(),), bodies, Box(np.ones(3)))) == [[0, 1], [0, 2], [1, 2]]
 
 
 @pytest.mark.parametrize("name", ["cube.ply", "pumpkin-1753.ply", MESHES[1], MESHES[3]])
@@ -127,12 +127,12 @@ def test_a_mesh_inside_another_is_no_hit_and_said_to_be_contained(name):
         sizes=[1e-3, 1.0, 1e-3],
         quaternions=np.concatenate([turns(rng, 1), [[1, 0, 0, 0]] * 2]),
     )
-    scene = Scene("mesh", mesh, bodies, Box(np.full(3, 10.0)))
+    scene = Scene("mesh", (mesh,), bodies, Box(np.full(3, 10.0)))
     made = detector(scene)
     assert made.pairs(bodies.positions, bodies.quaternions).tolist() == pairs(scene, "brute-force") == []
     assert made.contained.tolist() == [[0, 1]]
     assert made.counters["contained_pairs"] == 1
-    assert pairs(Scene("hull", mesh, bodies, scene.box)) == [[0, 1]]
+    assert pairs(Scene("hull", (mesh,), bodies, scene.box)) == [[0, 1]]
 
 
 def test_a_mesh_in_a_hollow_of_another_is_not_contained():
@@ -157,7 +157,7 @@ def test_most_pairs_are_settled_without_fcl():
     assert len(touching) > 100
     assert counted["hull_tests"] > counted["narrow_tests"] >= len(touching)
     assert counted["fcl_tests"] < 0.1 * counted["narrow_tests"]
-    hulls = detector(Scene("hull", scene.mesh, scene.bodies, scene.box))
+    hulls = detector(Scene("hull", (scene.mesh,), scene.bodies, scene.box))
     hulls.pairs(scene.bodies.positions, scene.bodies.quaternions)
     assert hulls.counters["fcl_tests"] == 0
 

@@ -44,7 +44,7 @@ def stages(scene, algorithm="grid", response="reflect", duration=10.0, forced=No
 def two(gap, speed=0.0, side=100.0, **more):
     """Two spheres this far apart that fly toward each other along x."""
     velocities = [[speed, 0, 0], [-speed, 0, 0]]
-    return Scene("sphere", None, make_bodies([[0, 0, 0], [1 + gap, 0, 0]], velocities, **more), Box(np.full(3, side)))
+    return Scene("sphere", (), make_bodies([[0, 0, 0], [1 + gap, 0, 0]], velocities, **more), Box(np.full(3, side)))
 
 
 @st.composite
@@ -60,7 +60,7 @@ def scenes(draw):
     if draw(st.booleans()):
         bodies.sizes *= np.linspace(1.0, 0.2, len(bodies))
     mesh = mesh_named("pumpkin-1753.ply") if draw(st.booleans()) else cube_mesh()
-    return Scene(shape, mesh, bodies, scene.box)
+    return Scene(shape, (mesh,), bodies, scene.box)
 
 
 @settings(max_examples=15)
@@ -122,17 +122,17 @@ def test_each_case_is_recognised():
     assert not stages(random_scene("sphere", 8, 4.0))["fcl"].kept
     assert stages(cubes)["orientations"].kept
     assert not stages(cubes)["size_classes"].kept
-    assert stages(Scene("hull", cubes.mesh, replaced(cubes, sizes=np.linspace(1, 2, 8)), cubes.box))[
+    assert stages(Scene("hull", (cubes.mesh,), replaced(cubes, sizes=np.linspace(1, 2, 8)), cubes.box))[
         "size_classes"
     ].kept
-    still = Scene("hull", cubes.mesh, replaced(cubes, spins=np.zeros((8, 3))), cubes.box)
+    still = Scene("hull", (cubes.mesh,), replaced(cubes, spins=np.zeros((8, 3))), cubes.box)
     assert not stages(still)["orientations"].kept
     assert stages(still)["motion"].kept
-    rest = Scene("hull", cubes.mesh, replaced(still, velocities=np.zeros((8, 3))), cubes.box)
+    rest = Scene("hull", (cubes.mesh,), replaced(still, velocities=np.zeros((8, 3))), cubes.box)
     assert not stages(rest)["motion"].kept
     assert stages(rest, "brute-force")["motion"].kept
     assert not stages(cubes)["recording"].kept
-    nobody = Scene("sphere", None, make_bodies(np.empty((0, 3))), Box(np.ones(3)))
+    nobody = Scene("sphere", (), make_bodies(np.empty((0, 3))), Box(np.ones(3)))
     assert not stages(nobody)["pairs"].kept
     assert not stages(nobody)["walls"].kept
 
@@ -146,7 +146,7 @@ def test_a_convex_mesh_of_one_size_is_judged_by_its_hull_alone():
     mesh = make_mesh("cube", cube.vertices, cube.faces)
     assert mesh.convex
     crowd = random_scene("mesh", 20, 2.5)
-    scene = Scene("mesh", mesh, crowd.bodies, crowd.box)
+    scene = Scene("mesh", (mesh,), crowd.bodies, crowd.box)
     found = stages(scene)
     assert not found["crossing"].kept
     assert not found["containment"].kept
@@ -154,10 +154,10 @@ def test_a_convex_mesh_of_one_size_is_judged_by_its_hull_alone():
     assert outcome.metrics["fcl_tests"] < 0.01 * outcome.metrics["narrow_tests"]
     assert story(outcome) == story(fly(scene, forced={"crossing": True})[1])
     assert story(outcome) == story(fly(scene, "brute-force")[1])
-    mixed = Scene("mesh", mesh, replaced(crowd, sizes=np.linspace(0.1, 1.5, 20)), crowd.box)
+    mixed = Scene("mesh", (mesh,), replaced(crowd, sizes=np.linspace(0.1, 1.5, 20)), crowd.box)
     assert stages(mixed)["crossing"].kept
     assert stages(mixed)["containment"].kept
-    pumpkins = Scene("mesh", mesh_named("pumpkin-1753.ply"), crowd.bodies, crowd.box)
+    pumpkins = Scene("mesh", (mesh_named("pumpkin-1753.ply"),), crowd.bodies, crowd.box)
     assert stages(pumpkins)["crossing"].kept
 
 
@@ -174,7 +174,7 @@ def test_pairs_are_left_out_just_where_no_pair_can_meet():
 def test_walls_are_left_out_just_where_no_body_can_get_to_one(response):
     """Along x, 10 m from the centre to the wall, of which the sphere fills half a metre: 9.5 s at 1 m/s."""
     bodies = make_bodies([[0, 0, 0]], [[1, 0, 0]])
-    scene = Scene("sphere", None, bodies, Box(np.array([10.0, 1.0, 1.0])))
+    scene = Scene("sphere", (), bodies, Box(np.array([10.0, 1.0, 1.0])))
     assert not stages(scene, response=response, duration=9.5 * (1 - 1e-6))["walls"].kept
     assert stages(scene, response=response, duration=9.5)["walls"].kept
     assert stages(scene, "brute-force", response=response, duration=0.1)["walls"].kept

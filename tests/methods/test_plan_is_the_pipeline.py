@@ -32,7 +32,7 @@ def crowd(shape, ratio=1.0, spin=1.0, speed=1.0):
         velocities=scene.bodies.velocities * speed,
     )
     mesh = mesh_named("pumpkin-1753.ply") if shape == "mesh" else scene.mesh
-    return Scene(shape, mesh, bodies, scene.box)
+    return Scene(shape, (mesh,), bodies, scene.box)
 
 
 class Calls:
@@ -135,7 +135,7 @@ def test_bodies_at_rest_are_looked_at_once_unless_motion_is_forced_on(calls):
 
 
 def test_pairs_that_cannot_meet_are_not_looked_for_unless_forced(calls):
-    scene = Scene("sphere", None, crowd("sphere").bodies, crowd("sphere").box)
+    scene = Scene("sphere", (), crowd("sphere").bodies, crowd("sphere").box)
     far = replace(
         scene,
         bodies=replace(scene.bodies, positions=scene.bodies.positions * 1e3, velocities=scene.bodies.velocities * 1e-9),

@@ -39,7 +39,7 @@ def mixed(shape, seed=3):
         sizes=rng.uniform(0.4, 1.2, 12),
         quaternions=scene.bodies.quaternions,
     )
-    return Scene(shape, cube_mesh(), bodies, scene.box)
+    return Scene(shape, (cube_mesh(),), bodies, scene.box)
 
 
 def by_pair(answers):
@@ -107,7 +107,7 @@ def test_every_hit_of_the_reference_is_found_at_its_time_however_long_a_frame_is
 def test_a_pair_that_touches_is_not_reported_until_it_has_parted():
     # flies through the other from 0.5 to 2.5 s, and comes back from the wall at 6.5 to 8.5 s
     bodies = make_bodies([[-1.5, 0.0, 0.0], [0.0, 0.0, 0.0]], velocities=[[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-    scene = Scene("sphere", None, bodies, replace(random_scene("sphere", 2, 6.0).box, half=np.full(3, 3.5)))
+    scene = Scene("sphere", (), bodies, replace(random_scene("sphere", 2, 6.0).box, half=np.full(3, 3.5)))
     for dt in (0.1, 0.7, 9.1):
         trace = asked(scene, "impact", law=MotionLaw(9.1, dt, "none")).trace
         assert trace.times[trace.walls < 0] == pytest.approx([0.5, 6.5], abs=1e-14)
@@ -117,7 +117,7 @@ def test_bodies_that_touch_at_the_start_have_not_begun_to():
     bodies = make_bodies([[-0.3, 0.0, 0.0], [0.3, 0.0, 0.0]], velocities=[[0.5, 0.0, 0.0], [-0.5, 0.0, 0.0]])
     turned = make_bodies(bodies.positions, bodies.velocities, quaternions=[[1.0, 0.0, 0.0, 0.0], [0.9, 0.1, 0.2, 0.3]])
     for shape in SHAPES:
-        scene = Scene(shape, cube_mesh(), turned, random_scene("sphere", 2, 8.0).box)
+        scene = Scene(shape, (cube_mesh(),), turned, random_scene("sphere", 2, 8.0).box)
         found = asked(scene, "impact", law=MotionLaw(0.5, 0.1, "none"))
         assert found.metrics["pair_hits"] == 0
 
@@ -125,7 +125,7 @@ def test_bodies_that_touch_at_the_start_have_not_begun_to():
 @pytest.mark.parametrize("query", ["tolerance", "distance", "impact"])
 def test_bodies_at_rest_are_asked_about_once(query):
     still = make_bodies([[-0.55, 0.0, 0.0], [0.55, 0.0, 0.0]])
-    scene = Scene("sphere", None, still, random_scene("sphere", 2, 8.0).box)
+    scene = Scene("sphere", (), still, random_scene("sphere", 2, 8.0).box)
     found = asked(scene, query)
     assert found.metrics["narrow_tests"] == LAW.frames * (query != "impact")
     assert found.metrics.get("near_pairs", 0) == LAW.frames * (query != "impact")

@@ -18,7 +18,7 @@ def fly(scene, *, frames=100, dt=1 / 60, response="reflect", backend="fcl", rest
 
 
 def spheres(positions, velocities, side=10.0, **more):
-    return Scene("sphere", None, make_bodies(positions, velocities, **more), Box(np.full(3, side / 2)))
+    return Scene("sphere", (), make_bodies(positions, velocities, **more), Box(np.full(3, side / 2)))
 
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])

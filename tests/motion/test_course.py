@@ -77,5 +77,5 @@ def test_folded_legs_agree_with_the_closed_form_also_from_beyond_a_wall():
 
 
 def test_a_scene_without_bodies_has_a_course_without_legs():
-    scene = Scene("sphere", None, make_bodies([]), Box(np.ones(3)))
+    scene = Scene("sphere", (), make_bodies([]), Box(np.ones(3)))
     assert len(fly(scene, "predictive", "reflect").course.times) == 0

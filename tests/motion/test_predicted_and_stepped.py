@@ -18,7 +18,7 @@ def gas():
     rng = np.random.default_rng(259)
     box = Box(np.full(3, 2.5))
     positions = place(np.full(30, 0.5), box, rng, overlap=False)
-    return Scene("sphere", None, make_bodies(positions, directions(rng, 30)), box)
+    return Scene("sphere", (), make_bodies(positions, directions(rng, 30)), box)
 
 
 def predicted(scene, response):

@@ -16,6 +16,6 @@ def test_whether_two_bodies_can_meet_is_the_same_by_every_pair_and_by_a_grid(few
         # 1 across each, they fly towards each other at 1 m/s for 2 s
         places = [[-2.5 - gap, 0, 0], [2.5, 0, 0], [0, 30, 0]]
         bodies = make_bodies(places, [[1, 0, 0], [-1, 0, 0], [0, 0, 0]])
-        scene = Scene("sphere", None, bodies, Box(np.full(3, 50.0)))
+        scene = Scene("sphere", (), bodies, Box(np.full(3, 50.0)))
         assert reach.no_pair_can_meet(scene, 2.0) is not meet
         assert not reach.no_pair_can_meet(scene, 2.0, within=1.0)

@@ -36,7 +36,7 @@ def fly(scene, until, response="elastic", restitution=1.0, tolerance=1e-9, max_e
 
 
 def cubes(positions, velocities, half=50.0, **options):
-    return Scene("hull", cube_mesh(), make_bodies(positions, velocities, **options), Box(np.full(3, float(half))))
+    return Scene("hull", (cube_mesh(),), make_bodies(positions, velocities, **options), Box(np.full(3, float(half))))
 
 
 def crowd(mesh, count, half, seed, shape="hull", spin=2.0, ratio=1.0):
@@ -53,7 +53,7 @@ def crowd(mesh, count, half, seed, shape="hull", spin=2.0, ratio=1.0):
         spins=rng.normal(size=(count, 3)) * spin,
         sizes=ratio ** rng.uniform(-1, 0, count),
     )
-    return Scene(shape, mesh, bodies, Box(np.full(3, float(half))))
+    return Scene(shape, (mesh,), bodies, Box(np.full(3, float(half))))
 
 
 def sequence(events):
@@ -202,7 +202,7 @@ def test_bodies_in_another_order_meet_as_before():
     bodies, order = scene.bodies, np.random.default_rng(0).permutation(12)
     shuffled = Bodies(*(getattr(bodies, field.name)[order] for field in fields(bodies)))
     one = fly(scene, np.inf, tolerance=1e-10, max_events=15).events
-    other = fly(Scene("mesh", scene.mesh, shuffled, scene.box), np.inf, tolerance=1e-10, max_events=15).events
+    other = fly(Scene("mesh", (scene.mesh,), shuffled, scene.box), np.inf, tolerance=1e-10, max_events=15).events
     assert np.allclose(one["time"], other["time"], atol=1e-6)
     for a, b in zip(one, other, strict=True):
         assert a["wall"] == b["wall"]
@@ -221,7 +221,7 @@ def test_ten_bodies_that_cannot_fit_into_their_box_come_to_an_end(shape, respons
         sizes=[1] * 8 + [0.3, 0.1],
     )
     bodies.positions[1] = bodies.positions[0]
-    scene = Scene(shape, mesh_named(PUMPKIN), bodies, Box(np.full(3, 1.0)))
+    scene = Scene(shape, (mesh_named(PUMPKIN),), bodies, Box(np.full(3, 1.0)))
     simulation = fly(scene, 0.3, response, tolerance=1e-6)
     assert simulation.time == 0.3
     assert np.isfinite(simulation.positions).all()
@@ -246,7 +246,7 @@ def test_a_rib_that_strikes_while_the_centres_separate_goes_through_in_silence()
     mesh = Mesh("bar", bar.vertices, bar.faces, bar, "", watertight=True, convex=True)
     bodies = make_bodies([(0, 0, 0), (0.3, 0, 0)], [(0, 0, 0), (0.01, 0, 0)], spins=[(0, 0, 0), (0, 0, 3)])
     bodies.quaternions[:] = (np.sqrt(0.5), 0, 0, np.sqrt(0.5))
-    scene = Scene("hull", mesh, bodies, Box(np.full(3, 5.0)))
+    scene = Scene("hull", (mesh,), bodies, Box(np.full(3, 5.0)))
     assert len(fly(scene, 3.0).events) == 0
     assert len(fly(scene, 3.0, "none").events) >= 1
     # with the centres approaching, the same stroke counts

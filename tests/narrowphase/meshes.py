@@ -40,4 +40,4 @@ def crowd(mesh, shape, count, side, seed, sizes=None):
         quaternions=turns(rng, count),
         spins=rng.normal(size=(count, 3)),
     )
-    return Scene(shape, mesh, bodies, Box(np.full(3, side)))
+    return Scene(shape, (mesh,), bodies, Box(np.full(3, side)))

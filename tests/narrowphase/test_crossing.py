@@ -118,7 +118,7 @@ def test_surfaces_are_judged_as_fcl_judges_them_and_nearly_always_judged(name):
     touching = {tuple(p) for p in brute.pairs(scene.bodies.positions, scene.bodies.quaternions).tolist()}
     pairs = np.array(list(combinations(range(30), 2)))
     placement = Places(scene.bodies.sizes).at(scene.bodies.positions, scene.bodies.quaternions)
-    surfaces = MeshPairs(scene.mesh)
+    surfaces = MeshPairs(scene.meshes, scene.mesh_of)
     for _ in range(2):  # searched, then started where they crossed
         verdicts = surfaces.settle(pairs, placement)
         assert {tuple(p) for p in pairs[which(verdicts, PairVerdict.TOUCHING)].tolist()} <= touching
@@ -129,4 +129,6 @@ def test_surfaces_are_judged_as_fcl_judges_them_and_nearly_always_judged(name):
 def test_aligned_cubes_that_share_planes_are_left_to_fcl():
     mesh, width = cube_mesh(), 1 / np.sqrt(3)
     placement = Places(np.ones(2)).at(np.array([[0, 0, 0], [width, 0, 0]]), np.array([[1.0, 0, 0, 0]] * 2))
-    assert MeshPairs(mesh).settle(np.array([[0, 1]]), placement).tolist() == [PairVerdict.UNDECIDED]
+    assert MeshPairs([mesh], np.zeros(2, np.int64)).settle(np.array([[0, 1]]), placement).tolist() == [
+        PairVerdict.UNDECIDED
+    ]

@@ -20,7 +20,7 @@ def test_a_frame_after_another_gives_the_gaps_of_each_pair_by_itself(shape, kern
     rng, mesh = np.random.default_rng(2), cube_mesh()
     sizes = rng.uniform(0.5, 2.0, 8)
     positions, q = rng.uniform(-2, 2, (8, 3)), turns(rng, 8)
-    places, asked = Places(sizes), kernel(mesh.hull if shape == "hull" else mesh)
+    places, asked = Places(sizes), kernel([mesh.hull if shape == "hull" else mesh], np.zeros(8, np.int64))
     for frame in range(3):
         positions = positions + 0.1 * rng.normal(size=(8, 3))
         pairs = PAIRS[frame::2]  # some are new, some are gone

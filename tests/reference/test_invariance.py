@@ -31,7 +31,7 @@ def straight(bend=lambda scene, positions: positions):
 def scene():
     rng = np.random.default_rng(2)
     bodies = make_bodies(rng.uniform(-3, 3, (6, 3)), rng.normal(size=(6, 3)), sizes=np.full(6, 0.5))
-    return Scene("sphere", None, bodies, Box(np.full(3, 10.0)))
+    return Scene("sphere", (), bodies, Box(np.full(3, 10.0)))
 
 
 def test_straight_flight_keeps_every_symmetry():

@@ -17,7 +17,7 @@ def test_the_hits_of_a_run_tell_where_its_bodies_were(response, restitution):
     rng = np.random.default_rng(1)
     grid = np.stack(np.meshgrid(*[[-1.2, 0.0, 1.2]] * 3), axis=-1).reshape(-1, 3)
     bodies = make_bodies(grid, rng.normal(size=grid.shape), sizes=rng.uniform(0.5, 1.0, len(grid)))
-    scene = Scene("sphere", None, bodies, Box(np.full(3, 2.0)))
+    scene = Scene("sphere", (), bodies, Box(np.full(3, 2.0)))
     trace = fly(scene, "predictive", MotionLaw(2.0, 1.0, response, restitution)).trace
     assert len(trace.times) > 50
     times = np.array([0.5, 1.0, 2.0])

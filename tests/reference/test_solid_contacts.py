@@ -16,7 +16,7 @@ TOLERANCE = 1e-10
 
 def contacts(shape, positions, velocities, duration, half=50.0):
     bodies = make_bodies(positions, velocities)
-    found = solid_contacts(Scene(shape, cube_mesh(), bodies, Box(np.full(3, half))), duration, TOLERANCE)
+    found = solid_contacts(Scene(shape, (cube_mesh(),), bodies, Box(np.full(3, half))), duration, TOLERANCE)
     return list(zip(found.onset.tolist(), found.release.tolist(), strict=True))
 
 

@@ -14,7 +14,7 @@ from harness.replay.document import document
 from harness.replay.page import replay_page
 from harness.replay.still import still
 from harness.store.recording import NearLines
-from tests.store.test_recording import recording
+from tests.store.test_recording import SQUARE, TRIANGLE, recording
 
 KINDS = {"f4": "<f4", "f8": "<f8", "i4": "<i4", "u4": "<u4", "u2": "<u2"}
 
@@ -61,9 +61,19 @@ def test_lines_and_rings_are_there_where_a_query_has_them():
 def test_a_large_mesh_has_wide_corner_numbers():
     recorded = recording()
     vertices = np.zeros((2**16, 3))
-    large = recorded.surface._replace(vertices=vertices)
-    object.__setattr__(recorded, "surface", large)
+    large = recorded.surfaces[0]._replace(vertices=vertices)
+    object.__setattr__(recorded, "surfaces", (large,))
     assert document(recorded, "X")["arrays"]["faces"][0] == "u4"
+
+
+def test_a_mixture_carries_every_mesh_once_and_says_which_body_has_which():
+    mixed = recording((TRIANGLE, SQUARE))
+    found = document(mixed, "X")
+    told = arrays(found)
+    assert told["mesh_of"].tolist() == [0, 1, 0]
+    assert (told["vertex_starts"].tolist(), told["face_starts"].tolist()) == ([0, 3, 7], [0, 1, 3])
+    assert told["faces"].tolist() == [0, 1, 2, 0, 1, 2, 0, 2, 3]
+    assert found["mesh"] == "triangle, square"
 
 
 def test_the_page_is_one_file_that_asks_for_nothing_and_the_same_each_time():
@@ -76,7 +86,7 @@ def test_the_page_is_one_file_that_asks_for_nothing_and_the_same_each_time():
     assert json.loads(carried)["title"] == "</script><script>alert(1)</script>"
 
 
-@pytest.mark.parametrize("surface", [None, recording().surface])
+@pytest.mark.parametrize("surface", [(), recording().surfaces])
 def test_the_still_shows_the_box_and_the_bodies_on_nothing(surface):
     picture = Image.open(io.BytesIO(still(recording(surface)))).convert("RGBA")
     opaque = np.asarray(picture)[..., 3] > 0

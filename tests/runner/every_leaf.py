@@ -26,7 +26,7 @@ from harness.experiment.load import load_text
 from harness.measure.verdicts import judge
 from harness.runner.execute import plan_of
 from harness.runner.scene_of_point import build_scene
-from harness.runner.servers import Servers, mesh_of
+from harness.runner.servers import Servers, files_of
 from harness.runner.sweep import run
 from harness.scene.mesh import Mesh
 from tests.runner.extreme_numbers import NUMBERS, meshes, outcome
@@ -124,7 +124,7 @@ def planned_here(document: dict[str, Any], opened: dict[Path, Mesh]) -> None:
     loaded = load_text(json.dumps(document), Path("extreme.yaml"))
     named = dict.fromkeys(loaded.mesh_paths.values(), next(iter(opened.values())))
     for point in loaded.points[:1]:
-        plan_of(point, build_scene(point, mesh_of(loaded, point, named)))
+        plan_of(point, build_scene(point, files_of(loaded, point, named)))
 
 
 def verdict(experiment: dict[str, Any], table: pd.DataFrame) -> tuple[str, str | None]:

@@ -27,7 +27,7 @@ from harness.experiment.load import load_text
 from harness.process_limits import limit
 from harness.runner.execute import plan_of
 from harness.runner.scene_of_point import SceneSizeError, build_scene
-from harness.runner.servers import Servers, mesh_of, task_of
+from harness.runner.servers import Servers, files_of, task_of
 from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.mesh_child import open_all
@@ -154,7 +154,7 @@ def _plan(loaded: Any, named: dict[Path, Mesh], channel: Channel) -> None:
     limit(memory=2**30, processor=PLAN_SECONDS)
     point = loaded.points[0]
     try:
-        plan_of(point, build_scene(point, mesh_of(loaded, point, named), loaded.measure.memory))
+        plan_of(point, build_scene(point, files_of(loaded, point, named), loaded.measure.memory))
         said = "planned"
     except (InputError, PlacementError, SceneSizeError):
         said = "refused"

@@ -7,6 +7,7 @@ from harness.experiment.load import load_text
 from harness.runner import accuracy, reference_cache
 from harness.runner.execute import execute
 from harness.runner.key import point_key
+from harness.scene.scene_files import SceneFiles
 
 GAS = """
 title: Gas
@@ -29,7 +30,7 @@ def points(text=GAS, **leaves):
 
 def metrics(text=GAS, **leaves):
     (point,) = points(text, **leaves)
-    return execute(point, None).metrics
+    return execute(point, SceneFiles()).metrics
 
 
 @pytest.mark.slow
@@ -121,7 +122,7 @@ def test_a_damaged_or_unfinished_reference_is_made_again(cache):
 
 def test_a_point_with_a_reference_is_another_than_without_and_no_other_measures_errors():
     plain = GAS.replace(", reference: {algorithm: predictive, tolerance: 1.0e-10}", "")
-    assert point_key(points()[0], None) != point_key(points(plain)[0], None)
+    assert point_key(points()[0], SceneFiles()) != point_key(points(plain)[0], SceneFiles())
     assert "missed_hits" not in metrics(plain)
 
 

@@ -8,6 +8,7 @@ from harness.motion.law import MotionLaw
 from harness.runner.execute import execute
 from harness.runner.point import law_of, method_of_point
 from harness.runner.repetition import COLD_UNTIL, LONG_ENOUGH, fly_long_enough, warm
+from harness.scene.scene_files import SceneFiles
 
 SHARES = [2.0**-k for k in range(6, -1, -1)]
 
@@ -89,7 +90,7 @@ def test_every_method_is_warmed_the_same_way_on_what_is_not_timed(spheres, monke
             return self.pipeline.fly(law, traced=traced)
 
     monkeypatch.setattr("harness.runner.execute.method_of_point", lambda _: Loading())
-    execute(point, None)
+    execute(point, SceneFiles())
     whole = law_of(point).duration
     assert flown[0] == (1, max(whole / 64, point.motion.dt))
     assert (2, whole) in flown
@@ -100,9 +101,9 @@ def test_every_flight_of_a_real_scene_counts_the_same(spheres, monkeypatch):
     """Whatever a backend keeps from one flight to the next, what is reported is what a single flight reports."""
     for algorithm in ("brute-force", "grid", "tree"):
         point = spheres(count=12, algorithm=algorithm).points[0]
-        often = execute(point, None)
+        often = execute(point, SceneFiles())
         monkeypatch.setattr("harness.runner.repetition.COLD_UNTIL", 0.0)
-        once = execute(point, None)
+        once = execute(point, SceneFiles())
         monkeypatch.undo()
         assert often.flights > once.flights == 1
         exact = [name for name in once.metrics if not METRICS[name].noisy]

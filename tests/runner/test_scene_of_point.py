@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from harness.runner.scene_of_point import box_of, build_scene, derived_parameters
+from harness.scene.scene_files import SceneFiles
 
 
 def scene_of(experiment):
-    return build_scene(experiment.points[0], None)
+    return build_scene(experiment.points[0], SceneFiles())
 
 
 def test_the_same_seed_makes_the_same_scene_and_another_does_not(spheres):
@@ -40,13 +41,13 @@ def test_drawn_values_lie_in_their_ranges(spheres):
 @pytest.mark.parametrize(("ratio", "side"), [("1/100", 10), ("1/25", 5), ("1/4", 2)])
 def test_the_box_ratio_is_the_square_of_size_over_side(spheres, ratio, side):
     experiment = spheres(box_ratio=ratio, overlap="allow")
-    assert box_of(experiment.points[0]).sides == pytest.approx([side] * 3)
+    assert box_of(experiment.points[0], SceneFiles()).sides == pytest.approx([side] * 3)
 
 
 def test_derived_parameters_are_those_of_the_scene(spheres):
     for size in (1.0, {"uniform": [0.5, 1.5]}):
         experiment = spheres(count=20, box=[10, 10, 20], size=size)
-        derived, scene = derived_parameters(experiment.points[0], None), scene_of(experiment)
+        derived, scene = derived_parameters(experiment.points[0], SceneFiles()), scene_of(experiment)
         assert derived["packing"] == pytest.approx(scene.packing)
         assert derived["box_side"] == pytest.approx(2000 ** (1 / 3))
 

@@ -11,7 +11,7 @@ from harness.runner.execute import execute
 from harness.runner.key import point_key
 from harness.runner.preparation import prepare
 from harness.runner.scene_of_point import derived_parameters
-from harness.runner.servers import mesh_of, on_demand_of
+from harness.runner.servers import files_of, on_demand_of
 from harness.scene.launch import PlacementError
 from harness.store.records import RunRecord
 from harness.store.tables import run_table
@@ -40,14 +40,14 @@ def flown(name):
     (experiment,), meshes = prepare([CASES[name]], SHORTER.get(name, {}))
     records = []
     for point in experiment.points:
-        mesh = mesh_of(experiment, point, meshes)
+        files = files_of(experiment, point, meshes)
         status, reason, metrics = "ok", None, {}
         try:
-            metrics = execute(point, mesh, on_demand=on_demand_of(experiment)).metrics
+            metrics = execute(point, files, on_demand=on_demand_of(experiment)).metrics
         except (PlacementError, InputError) as error:
             status, reason = "rejected", str(error)
-        parameters = {**point.parameters, **derived_parameters(point, mesh)}
-        records.append(RunRecord(name, point_key(point, mesh), 0, status, reason, 0, True, parameters, metrics))
+        parameters = {**point.parameters, **derived_parameters(point, files)}
+        records.append(RunRecord(name, point_key(point, files), 0, status, reason, 0, True, parameters, metrics))
     return experiment, run_table(records)
 
 

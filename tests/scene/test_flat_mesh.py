@@ -12,6 +12,7 @@ from harness.runner.execute import execute
 from harness.runner.preparation import prepare
 from harness.scene.mesh_child import open_meshes
 from harness.scene.mesh_file import make_mesh, read_mesh
+from harness.scene.scene_files import SceneFiles
 
 QUAD = "v -5 -5 0\nv 5 -5 0\nv -5 5 0\nv 5 5 0\nf 1 2 3\nf 2 4 3\n"
 SIDE = np.sqrt(0.5)  # of a square whose bounding sphere has diameter 1
@@ -42,7 +43,7 @@ def quad(tmp_path, monkeypatch):
 def hits(quad, algorithm, turn, offset, backend="fcl"):
     text = EXPERIMENT.format(turn=turn, offset=offset, algorithm=algorithm, backend=backend)
     experiment = load_text(text, quad.absolute().parent / "flat.yaml")
-    return execute(experiment.points[0], read_mesh(quad), traced=True).trace
+    return execute(experiment.points[0], SceneFiles((read_mesh(quad),)), traced=True).trace
 
 
 @pytest.mark.parametrize("turn", [0, 0.3])

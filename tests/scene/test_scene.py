@@ -22,7 +22,7 @@ def bodies(sizes):
 
 
 def test_packing_is_of_bounding_spheres_and_the_side_of_the_cube_of_the_same_volume():
-    scene = Scene("sphere", None, bodies([1, 2]), Box(np.array([1, 2, 4])))
+    scene = Scene("sphere", (), bodies([1, 2]), Box(np.array([1, 2, 4])))
     assert scene.packing == pytest.approx(np.pi / 6 * 9 / 64)
     assert scene.box_side == pytest.approx(4)
     assert scene.mean_size == 1.5
@@ -31,13 +31,13 @@ def test_packing_is_of_bounding_spheres_and_the_side_of_the_cube_of_the_same_vol
 
 def test_faces_and_hull_are_the_meshes():
     cube = trimesh.creation.box().subdivide()
-    scene = Scene("hull", make_mesh("cube", cube.vertices, cube.faces), bodies([]), Box(np.ones(3)))
+    scene = Scene("hull", (make_mesh("cube", cube.vertices, cube.faces),), bodies([]), Box(np.ones(3)))
     assert (scene.faces, scene.hull_vertices, scene.packing, scene.mean_size) == (48, 8, 0, 0)
 
 
 def test_only_spheres_need_no_mesh():
     with pytest.raises(ValueError, match="needs a mesh"):
-        Scene("hull", None, bodies([1]), Box(np.ones(3)))
+        Scene("hull", (), bodies([1]), Box(np.ones(3)))
 
 
 def test_a_copy_of_bodies_shares_nothing():

@@ -9,16 +9,24 @@ from harness.store.recording import NearLines, Recording, Surface, recording_of
 from harness.store.records import PointRow
 
 TRIANGLE = Surface(
-    "t.ply", "abc", np.array([[0.5, 0, 0], [-0.25, 0.4, 0], [-0.25, -0.4, 0.1]]), np.array([[0, 1, 2]], np.int32)
+    "triangle", "abc", np.array([[0.5, 0, 0], [-0.25, 0.4, 0], [-0.25, -0.4, 0.1]]), np.array([[0, 1, 2]], np.int32)
+)
+
+SQUARE = Surface(
+    "square",
+    "def",
+    np.array([[0.3, 0.3, 0], [-0.3, 0.3, 0], [-0.3, -0.3, 0], [0.3, -0.3, 0]]),
+    np.array([[0, 1, 2], [0, 2, 3]], np.int32),
 )
 
 
-def recording(surface=TRIANGLE, bodies=3):
+def recording(surfaces=(TRIANGLE,), bodies=3):
     rng = np.random.default_rng(bodies)
     turned = np.array([0.0, 2.0][: min(bodies, 2)], float)
     return Recording(
-        shape="mesh" if surface else "sphere", duration=1.5, dt=0.1, half_box=np.array([1.0, 2.0, 1 / 3]),
-        sizes=rng.random(bodies), quaternions=rng.random((bodies, 4)), spins=rng.random((bodies, 3)), surface=surface,
+        shape="mesh" if surfaces else "sphere", duration=1.5, dt=0.1, half_box=np.array([1.0, 2.0, 1 / 3]),
+        sizes=rng.random(bodies), quaternions=rng.random((bodies, 4)), spins=rng.random((bodies, 3)),
+        surfaces=surfaces, surface_of=np.arange(bodies) % max(1, len(surfaces)),
         leg_times=np.r_[np.zeros(bodies), np.full(len(turned), 0.7), 0.9],
         leg_bodies=np.r_[np.arange(bodies), turned, 1].astype(int),
         leg_positions=rng.random((bodies + len(turned) + 1, 3)),
@@ -42,10 +50,10 @@ def kept(path, *recordings):
 def same(a, b):
     for field in fields(Recording):
         one, other = getattr(a, field.name), getattr(b, field.name)
-        if field.name == "surface":
-            assert (one is None) == (other is None)
-            assert one is None or (one.digest == other.digest and (one.vertices == other.vertices).all())
-            assert one is None or (one.faces == other.faces).all()
+        if field.name == "surfaces":
+            assert [mesh.digest for mesh in one] == [mesh.digest for mesh in other]
+            assert all((a.vertices == b.vertices).all() for a, b in zip(one, other, strict=True))
+            assert all((a.faces == b.faces).all() for a, b in zip(one, other, strict=True))
         elif field.name == "near":
             assert (one is None) == (other is None)
             assert one is None or all(np.array_equal(mine, theirs) for mine, theirs in zip(one, other, strict=True))
@@ -75,8 +83,13 @@ def test_the_newest_recording_is_shown_and_a_mesh_is_kept_once(tmp_path):
 
 
 def test_spheres_need_no_mesh(tmp_path):
-    kept(tmp_path / "r.db", recording(surface=None))
-    same(recording_of(tmp_path / "r.db", "x").recording, recording(surface=None))
+    kept(tmp_path / "r.db", recording(()))
+    same(recording_of(tmp_path / "r.db", "x").recording, recording(()))
+
+
+def test_a_mixture_keeps_every_mesh_and_which_body_has_which(tmp_path):
+    kept(tmp_path / "r.db", recording((TRIANGLE, SQUARE), bodies=4))
+    same(recording_of(tmp_path / "r.db", "x").recording, recording((TRIANGLE, SQUARE), bodies=4))
 
 
 def test_an_experiment_without_a_recording_has_none(tmp_path):

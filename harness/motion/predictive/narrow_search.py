@@ -7,6 +7,7 @@ from harness.motion.predictive.codes import Phase
 from harness.motion.predictive.solids import SolidWorld, motion_of
 from harness.motion.predictive.windows import close
 from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
+from harness.narrowphase.body_shapes import shape_of
 from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
 from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
 from harness.narrowphase.tree_pairs import NodePair
@@ -27,22 +28,22 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     a, b = motion_of(body, motions, i, now), motion_of(body, motions, j, now)
     tolerance = 0.5 * body.tolerance * (a.size + b.size)
     left = max(window.end - now, 0.0)
-    hull, phase = body.shape.hull, window.phase
+    one, other, phase = shape_of(body.shapes, i), shape_of(body.shapes, j), window.phase
     hull_seeds = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
     coarse = body.concave and phase == Phase.APART
     if phase == Phase.TOUCHING:
         if body.concave:
-            ended = end_of_mesh_contact(body.shape, body.shape, a, b, 0.0, left, 2.0 * tolerance)
+            ended = end_of_mesh_contact(one, other, a, b, 0.0, left, 2.0 * tolerance)
         else:
-            ended = end_of_hull_contact(hull, hull, a, b, 0.0, left, 2.0 * tolerance)
+            ended = end_of_hull_contact(one.hull, other.hull, a, b, 0.0, left, 2.0 * tolerance)
         verdict, time, steps = ended.verdict, ended.time, ended.steps
     elif coarse or not body.concave:
         enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
-        found = time_of_impact(hull, hull, a, b, 0.0, left, enough, hull_seeds)
+        found = time_of_impact(one.hull, other.hull, a, b, 0.0, left, enough, hull_seeds)
         verdict, time, hull_seeds, steps = found.verdict, found.time, found.warm_start, found.steps
     else:
         start = MeshWarmStart(hull_seeds, NodePair(warm.surfaces[0], warm.surfaces[1]))
-        mesh_found = time_of_mesh_impact(body.shape, body.shape, a, b, 0.0, left, tolerance, start)
+        mesh_found = time_of_mesh_impact(one, other, a, b, 0.0, left, tolerance, start)
         verdict, time, steps = mesh_found.verdict, mesh_found.time, mesh_found.steps
         hull_seeds, (warm.surfaces[0], warm.surfaces[1]) = mesh_found.warm_start
     warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3] = hull_seeds
@@ -73,7 +74,13 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     face = 2 * axis + (1 if world.spheres.motions[k].velocity[axis] > 0.0 else 0)
     flight = motion_of(body, world.spheres.motions, k, now)
     found = time_of_wall_impact(
-        body.shape.hull, flight, face, body.scale * rules.half_box[axis], 0.0, 1e300, body.tolerance * flight.size
+        shape_of(body.shapes, k).hull,
+        flight,
+        face,
+        body.scale * rules.half_box[axis],
+        0.0,
+        1e300,
+        body.tolerance * flight.size,
     )
     counts.box_tests += 1
     counts.advancement_steps += found.steps

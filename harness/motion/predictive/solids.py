@@ -1,4 +1,4 @@
-"""Bodies of one shape, in their sizes and orientations, as the event loop needs them.
+"""Bodies of any shapes, in their sizes and orientations, as the event loop needs them.
 
 Orientations are exact functions of absolute time, exp(w t) q0. Like positions they are counted from a base of time
 that follows the present, and at every new base they are made anew from q0 with the angle in twice the digits: at 10^9 s
@@ -17,6 +17,7 @@ from harness.kernel import kernel, step
 from harness.motion.predictive.double_double import DOUBLE_DOUBLE, angle_after, norm
 from harness.motion.predictive.state import Record, Records, World
 from harness.motion.predictive.windows import Windows
+from harness.narrowphase.body_shapes import Shapes, shape_of, shapes_of_bodies
 from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import support_map
@@ -24,6 +25,7 @@ from harness.narrowphase.triangle_tree import triangle_tree
 from harness.narrowphase.units import unit_of
 from harness.narrowphase.vectors import Vector
 from harness.scene.bodies import Bodies
+from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 
 Quaternion = tuple[float, float, float, float]
@@ -39,13 +41,21 @@ class Form:
     """
 
     def __init__(self, scene: Scene, surface: bool | None = None) -> None:
-        if scene.mesh is None or scene.shape == "sphere":
+        if scene.shape == "sphere":
             raise ValueError("a sphere has no surface to search")
-        mesh, hull = scene.mesh, scene.mesh.hull
         self.concave = needs_its_surface(scene) if surface is None else surface
-        faces = mesh.faces if self.concave else mesh.faces[:1]
-        tree = triangle_tree(mesh.vertices, faces)
-        self.shape = MeshShape(support_map(hull.vertices), tree, 0.5)
+        shapes = [_shape(mesh, surface=self.concave) for mesh in scene.meshes]
+        self._shapes, self._mesh_of = shapes, scene.mesh_of
+
+    def shapes(self, order: Ints) -> Shapes:
+        """The surfaces of the bodies in an order, (n,) int array of which body comes where."""
+        return shapes_of_bodies(self._shapes, self._mesh_of[order])
+
+
+def _shape(mesh: Mesh, *, surface: bool) -> MeshShape:
+    """A mesh of diameter 1, of which the surface is one triangle where it is not searched."""
+    tree = triangle_tree(mesh.vertices, mesh.faces if surface else mesh.faces[:1])
+    return MeshShape(support_map(mesh.hull.vertices), tree, 0.5)
 
 
 def needs_its_surface(scene: Scene) -> bool:
@@ -53,16 +63,16 @@ def needs_its_surface(scene: Scene) -> bool:
 
     Convex meshes do not, unless one is wholly inside another, which equal bodies cannot be.
     """
-    convex = scene.mesh is not None and scene.mesh.convex and np.ptp(scene.bodies.sizes) == 0.0
+    convex = all(mesh.convex for mesh in scene.meshes) and np.ptp(scene.bodies.sizes) == 0.0
     return scene.shape == "mesh" and not convex
 
 
 class Solids(NamedTuple):
-    """n bodies of one shape.
+    """n bodies.
 
     Attributes
     ----------
-    shape : MeshShape, of diameter 1; for bodies whose hull is all there is of them, its tree holds one triangle only
+    shapes : of diameter 1; for bodies whose hull is all there is of them, a tree holds one triangle only
     concave : whether the surface is to be searched where hulls touch
     sizes : (n,) m, diameters of the bounding spheres
     reaches : (n,) m, farthest that any point is from its axis of spin through the centre
@@ -74,7 +84,7 @@ class Solids(NamedTuple):
     scale : units a metre, a power of two, so that bodies are about 1 across in the narrow phase
     """
 
-    shape: MeshShape
+    shapes: Shapes
     concave: bool
     sizes: Floats
     reaches: Floats
@@ -106,14 +116,15 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     """
     sizes, spins, start = bodies.sizes[order], bodies.spins[order], bodies.quaternions[order]
     reaches, rates = np.empty(len(sizes)), np.empty(len(sizes), dtype=DOUBLE_DOUBLE)
-    measure(form.shape.hull.vertices, sizes, spins, start, reaches, rates)
+    shapes = form.shapes(order)
+    measure(shapes, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
     turns = start.copy()
-    return Solids(form.shape, form.concave, sizes, reaches, spins, rates, start, turns, tolerance, scale)
+    return Solids(shapes, form.concave, sizes, reaches, spins, rates, start, turns, tolerance, scale)
 
 
 @kernel
-def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reaches: Floats, rates: Records) -> None:
+def measure(shapes: Shapes, sizes: Floats, spins: Floats, start: Floats, reaches: Floats, rates: Records) -> None:
     """Fill in reaches and rates."""
     for k in range(len(sizes)):
         x, y, z = spins[k]
@@ -126,7 +137,7 @@ def measure(vertices: Floats, sizes: Floats, spins: Floats, start: Floats, reach
             x, y, z = x / high, y / high, z / high
             s, t, u = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
             x, y, z = x - w * s + b * u - c * t, y - w * t + c * s - a * u, z - w * u + a * t - b * s
-            farthest = 0.0
+            farthest, vertices = 0.0, shape_of(shapes, k).hull.vertices
             for vertex in range(len(vertices)):
                 p, q, r = vertices[vertex]
                 along = x * p + y * q + z * r

@@ -18,6 +18,7 @@ export class Recording {
     this.facts = text.facts;
     this.count = this.sizes.length;
     this.hits = this.hit_times.length;
+    this.meshes = this.vertices ? Array.from({ length: this.face_starts.length - 1 }, (_, mesh) => this._mesh(mesh)) : [];
     this.lines = this.near_frames ? this.near_frames.length : 0; // between near bodies, of all frames
     this.largest = this.sizes.reduce((a, b) => Math.max(a, b), 0);
     this.legs = new Uint32Array(this.count); // of each body the leg that was looked up last
@@ -28,6 +29,13 @@ export class Recording {
       this.hitsByBody[this.hit_first[hit]].push(hit);
       if (this.hit_second[hit] >= 0) this.hitsByBody[this.hit_second[hit]].push(hit);
     }
+  }
+
+  /** One of the meshes that bodies have. */
+  _mesh(number) {
+    const [first, end] = this.vertex_starts.subarray(number, number + 2);
+    const [face, last] = this.face_starts.subarray(number, number + 2);
+    return { vertices: this.vertices.subarray(3 * first, 3 * end), faces: this.faces.subarray(3 * face, 3 * last) };
   }
 
   /** Seconds from frame to frame; 1/60 where nothing was computed in frames. */

@@ -39,15 +39,15 @@ export class Stage {
     this.quaternions = new Float64Array(4 * recording.count);
     this.marks = new Float32Array(3 * recording.count);
     this.instances = new Float32Array(INSTANCE * recording.count);
-    for (const form of [this.near, this.far]) this._drop(form);
-    if (!recording.vertices) {
-      this.near = this._form(sphere(3));
-      this.far = this._form(sphere(1));
-      return;
-    }
-    this.near = this._form(surface(recording.vertices, recording.faces));
-    const rough = recording.faces.length > 3 * FEW_FACES ? coarse(recording.vertices, recording.faces) : recording;
-    this.far = this._form(surface(rough.vertices, rough.faces));
+    for (const { near, far } of this.forms || []) [near, far].forEach((form) => this._drop(form));
+    this.forms = recording.meshes.map((mesh) => {
+      const rough = mesh.faces.length > 3 * FEW_FACES ? coarse(mesh.vertices, mesh.faces) : mesh;
+      return {
+        near: this._form(surface(mesh.vertices, mesh.faces)),
+        far: this._form(surface(rough.vertices, rough.faces)),
+      };
+    });
+    if (!this.forms.length) this.forms = [{ near: this._form(sphere(3)), far: this._form(sphere(1)) }];
   }
 
   /** Fit the picture to its place on the page; whether it changed. */
@@ -97,9 +97,10 @@ export class Stage {
   _drawBodies(view, colours) {
     const { gl, body, recording } = this;
     const scale = this.canvas.height / view.tanHalfField / 2;
-    const near = [], far = [];
+    const drawn = this.forms.map(() => ({ near: [], far: [] }));
     for (let i = 0; i < recording.count; i++) {
       const w = project(view.matrix, ...this.positions.subarray(3 * i, 3 * i + 3))[3];
+      const { near, far } = drawn[recording.meshes.length ? recording.mesh_of[i] : 0];
       (recording.sizes[i] * scale > SMALL * w ? near : far).push(i);
     }
     body.use();
@@ -107,7 +108,8 @@ export class Stage {
     for (const name of ["eye", "right", "up", "forward"]) gl.uniform3fv(body.uniforms[name], view[name]);
     for (const name of ["plain", "met", "wall", "chosen", "page"]) gl.uniform3fv(body.uniforms[name], colours[name]);
     gl.uniform2f(body.uniforms.fog, view.distance - 0.5 * view.radius, 1 / (1.5 * view.radius));
-    for (const [form, bodies] of [[this.near, near], [this.far, far]]) {
+    const groups = drawn.flatMap(({ near, far }, mesh) => [[this.forms[mesh].near, near], [this.forms[mesh].far, far]]);
+    for (const [form, bodies] of groups) {
       bodies.forEach((i, place) => {
         const at = INSTANCE * place;
         this.instances.set(this.positions.subarray(3 * i, 3 * i + 3), at);
