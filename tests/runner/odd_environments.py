@@ -2,8 +2,8 @@
 
     python tests/runner/odd_environments.py [ENVIRONMENT ...]
 
-Each command takes a second or a few of CPU time where the kernels of the sources are kept, so that the plain environment
-always comes first; where they are not, and may not be written, each would compile them for itself, for minutes.
+Each command takes a second or a few of CPU time where the kernels of the sources are kept, so that the plain
+environment always comes first; where they are not, and may not be written, each would compile them for itself.
 
 Without a home, with folders that may not be written to, with little of everything, closed streams, other languages,
 warnings as errors. Prints what came of each, and how many tries went wrong: a trace of the program's own code, an exit
