@@ -138,7 +138,8 @@ def expected_work(seekers: Level, others: Level) -> float:
 
 @inner
 def compare(slot: int, begin: int, end: int, square: float, cells: Cells, keys: Keys, close: int) -> int:
-    """Put the body in a slot to the test with a run of others. Returns how many close pairs are found by now."""
+    """Put the body in a slot to the test with a run of others, of which those with centres farther apart than the root
+    of `square`, m^2, are passed over. Returns how many close pairs are found by now."""
     slots, columns = cells.slots, cells.columns
     x, y, z, radius = columns[0, slot], columns[1, slot], columns[2, slot], columns[3, slot]
     for other in range(begin, end):
