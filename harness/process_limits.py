@@ -55,6 +55,22 @@ def limit(*, memory: int | None = None, output: int | None = None, processor: fl
         _lower(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + processor), for_good=False)
 
 
+def limit_memory_of_stranger() -> None:
+    """Let this process take no more than half of what the machine has, where nobody says what code may take."""
+    limit(memory=_half_of_machine())
+
+
+@contextmanager
+def memory_of_stranger_limited() -> Iterator[None]:
+    """As `limit_memory_of_stranger`, until the end of this context."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    _lower(resource.RLIMIT_AS, _address_space() + _half_of_machine(), for_good=False)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+
+
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
     """Until the end of this context no SIGINT reaches this thread; what is started meanwhile never gets any."""
@@ -86,6 +102,11 @@ def _lower(what: int, most: int, *, for_good: bool = True) -> None:
     _, hard = resource.getrlimit(what)
     most = most if hard == resource.RLIM_INFINITY else min(most, hard)
     resource.setrlimit(what, (most, most if for_good else hard))
+
+
+def _half_of_machine() -> int:
+    """B of memory."""
+    return os.sysconf("SC_PHYS_PAGES") * resource.getpagesize() // 2
 
 
 def _address_space() -> int:

@@ -1,6 +1,7 @@
 """A child process is awaited with a deadline, limited, silent, and ended with everything that it started."""
 
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from multiprocessing import Pipe
 import psutil
 import pytest
 
+from harness import process_limits
 from harness.child_process import Child, Ending, guarded
 from harness.process_limits import limit
 
@@ -251,3 +253,22 @@ def test_what_a_guarded_child_left_behind_ends_with_it_whatever_its_end(way):
             with suppress(ProcessLookupError):
                 os.kill(left, 9)
         assert child.end() == plain.end()
+
+
+def test_what_strangers_may_take_is_limited_and_given_back(monkeypatch):
+    monkeypatch.setattr(process_limits, "_half_of_machine", lambda: 2**30)
+
+    def fill(channel):
+        before = resource.getrlimit(resource.RLIMIT_AS)
+        with suppress(MemoryError), process_limits.memory_of_stranger_limited():
+            bytearray(2**31)
+            channel.send(b"filled")
+        channel.send(b"given back" if resource.getrlimit(resource.RLIMIT_AS) == before else b"kept")
+        process_limits.limit_memory_of_stranger()
+        with suppress(MemoryError):
+            bytearray(2**31)
+            channel.send(b"filled")
+        channel.send(b"limited")
+
+    with Child.fork(fill) as child:
+        assert [child.receive(SOON), child.receive(SOON)] == [b"given back", b"limited"]

@@ -63,6 +63,33 @@ def test_the_backend_that_it_shows_is_one_and_agrees_with_fcl():
     np.testing.assert_array_equal(*found)
 
 
+SCENE_XML = """
+<mujoco>
+  <option timestep="0.01"/>
+  <asset><mesh name="duck" file="{file}"/></asset>
+  <worldbody>
+    <body pos="0 0 1"><freejoint/><geom type="mesh" mesh="duck"/></body>
+    <body pos="0 0 5"><freejoint/><geom type="mesh" mesh="duck"/></body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "library", "count"), [(0, "pybullet", 4), (1, "mujoco", 2)])
+def test_a_recording_of_another_simulator_is_flown(number, library, count, tmp_path, monkeypatch, capsys):
+    pytest.importorskip(library)
+    duck = Path(pytest.importorskip("pybullet_data").getDataPath()) / "duck.obj"
+    monkeypatch.chdir(tmp_path)
+    Path("scene.xml").write_text(SCENE_XML.format(file=duck))
+    block = blocks("Bring a recording of your own simulator", "python")[number]
+    assert len(block.splitlines()) <= 15
+    exec(block, {})
+    scene = f"{{mesh: package:pybullet_data/duck.obj, count: {count}, size: native}}"
+    Path("x.yaml").write_text(f"title: t\nscene: {scene}\nmotion: {{poses: fall.npz}}\nengine: {{algorithm: grid}}\n")
+    assert main(["trace", "x.yaml"]) == 0
+
+
 @pytest.mark.slow
 def test_the_lines_for_python_run(monkeypatch):
     block = blocks("From Python", "python")[0]

@@ -15,14 +15,14 @@ import os
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, queries, units
 from harness.child_process import Channel, Child, guarded
 from harness.kept_files import keep, kept
 from harness.kernel_cache import PACKAGE
-from harness.process_limits import isolate
+from harness.process_limits import isolate, limit_memory_of_stranger
 from harness.vocabulary import Shape
 
 # s for the import and the answer of a stranger, of which a person waits for none with the first and for all that
@@ -149,6 +149,8 @@ def _say(name: str) -> Statement:
             )
     except registry.BackendError as error:
         return Statement(_one_line(error.why), installed=False)
+    except MemoryError:
+        return Statement("importing it takes more than half of the memory of this machine")
     except (Exception, SystemExit) as error:
         return Statement(_one_line(f"{type(error).__name__}: {error}"))
 
@@ -161,6 +163,11 @@ def _say_elsewhere(name: str, seconds: float) -> Statement:
         if not isinstance(answer, bytes):
             return Statement(f"importing it ended its process with {child.end()}")
     return _read(answer) or Statement("what it says of itself is garbage")
+
+
+def _say_within_limits(name: str, channel: Channel) -> None:
+    limit_memory_of_stranger()
+    channel.send(_written(_say(name)))
 
 
 def _read(said: bytes) -> Statement | None:
@@ -183,4 +190,4 @@ def _one_line(text: str) -> str:
 
 if __name__ == "__main__":
     isolate()
-    guarded(lambda channel: channel.send(_written(_say(sys.argv[2]))))(Channel(int(sys.argv[1])))
+    guarded(partial(_say_within_limits, sys.argv[2]))(Channel(int(sys.argv[1])))

@@ -25,8 +25,8 @@ SMALLEST_BUCKET = 10
 
 Rows = NDArray[np.void]
 
-ROW = np.dtype([("x", np.float64), ("y", np.float64), ("z", np.float64), ("cell", np.int32), ("body", np.int32)])
-"""A body in its bucket: its place, m, and its cell. Half a line of a cache, so that it is written as one."""
+ROW = np.dtype([*((name, np.float64) for name in ("x", "y", "z", "radius")), ("cell", np.int32), ("body", np.int32)])
+"""A body in its bucket: its place and radius, m, and its cell."""
 
 
 class Cells(NamedTuple):
@@ -34,18 +34,18 @@ class Cells(NamedTuple):
 
     Attributes
     ----------
-    radii : (n,) of each body, m
     members : (n,) the bodies by level, those of a level by their number
+    radii : (n,) of each member, m
     levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written every frame
     start : (sum of budgets + 1,) written: the first slot of each cell
     cell_of : (n,) written: each member's cell
     rows : (n,) of ROW, written: the bodies by bucket
     slots : (n, 2) written: each slot's cell and body
-    columns : (3, n + LANES) written: each slot's x, y and z, m; by coordinate, to be compared several at once
+    columns : (4, n + LANES) written: each slot's x, y, z and radius, m; each by itself, to be compared several at once
     """
 
-    radii: Floats
     members: Indices
+    radii: Floats
     levels: Levels
     start: Indices
     cell_of: Indices
@@ -87,7 +87,7 @@ def find_cells(positions: Floats, cells: Cells, counts: Indices, shift: int) -> 
 @strict_step
 def fill_buckets(positions: Floats, cells: Cells, ends: Indices, shift: int) -> None:
     """Write the bodies by bucket. `ends` holds how many each has, and then where each ends."""
-    members, cell_of, rows = cells.members, cells.cell_of, cells.rows
+    members, radii, cell_of, rows = cells.members, cells.radii, cells.cell_of, cells.rows
     begin = 0
     for bucket in range(len(ends)):
         count = ends[bucket]
@@ -99,7 +99,7 @@ def fill_buckets(positions: Floats, cells: Cells, ends: Indices, shift: int) -> 
         row = rows[np.uintp(ends[bucket])]
         ends[bucket] += 1
         row.x, row.y, row.z = positions[i, 0], positions[i, 1], positions[i, 2]
-        row.cell, row.body = cell, i
+        row.radius, row.cell, row.body = radii[member], cell, i
 
 
 @strict_step
@@ -122,4 +122,4 @@ def sort_bucket(cells: Cells, begin: int, end: int, first: int, last: int) -> No
         slot = np.uintp(start[cell] - 1)
         start[cell] = slot
         slots[slot, 0], slots[slot, 1] = row.cell, row.body
-        columns[0, slot], columns[1, slot], columns[2, slot] = row.x, row.y, row.z
+        columns[0, slot], columns[1, slot], columns[2, slot], columns[3, slot] = row.x, row.y, row.z, row.radius

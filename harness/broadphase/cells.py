@@ -21,7 +21,7 @@ RUNS = 5
 """Of three cells along z, with whose bodies one of the same level is compared: its own, and four later neighbours."""
 
 
-Arrays = tuple[Floats, Indices, Levels, Indices, Indices, Rows, Indices, Floats]
+Arrays = tuple[Indices, Floats, Levels, Indices, Indices, Rows, Indices, Floats]
 
 
 class Found(NamedTuple):
@@ -70,11 +70,11 @@ def pairs_within(level: Level, cells: Cells, keys: Keys, close: int, tests: int)
     """
     start, slots, columns = cells.start, cells.slots, cells.columns
     row, plane = level.row, level.plane
-    square = NEARLY * (2.0 * level.reach) ** 2
     begins, ends = np.empty(RUNS, np.int64), np.empty(RUNS, np.int64)
     for slot in range(level.begin, level.end):
         cell = slots[slot, 0]
         x, y, z = columns[0, slot], columns[1, slot], columns[2, slot]
+        square = NEARLY * (columns[3, slot] + level.reach) ** 2
         near, longest = 0, 0
         for run in range(RUNS):
             middle = cell + (run * row if run < 2 else plane + (run - 3) * row)
@@ -105,17 +105,25 @@ def pairs_between(seekers: Level, others: Level, cells: Cells, keys: Keys, close
     Either level may seek. Many small bodies each look into a few cells of the coarse lattice, but a few large ones do
     less work if they go through the fine cells that they cover. `close` and `tests` are as for `pairs_within`.
     """
-    start, slots, columns, radii = cells.start, cells.slots, cells.columns, cells.radii
+    start, columns = cells.start, cells.columns
     for slot in range(seekers.begin, seekers.end):
-        reach = (radii[slots[slot, 1]] + others.reach) * (1.0 + SLACK)
+        x, y, z = columns[0, slot], columns[1, slot], columns[2, slot]
+        reach = (columns[3, slot] + others.reach) * (1.0 + SLACK)
         square = NEARLY * reach * reach
-        block = block_around(others, columns[0, slot], columns[1, slot], columns[2, slot], reach)
+        block = block_around(others, x, y, z, reach)
         first, last = others.first + block.x0 * others.plane, others.first + block.x1 * others.plane
         for plane in range(first, last + 1, others.plane):
             for row in range(plane + block.y0 * others.row, plane + block.y1 * others.row + 1, others.row):
-                begin, end = start[row + block.z0], start[row + block.z1 + 1]
-                close = compare(slot, begin, end, square, cells, keys, close)
-                tests += end - begin
+                begin, end = start[np.uintp(row + block.z0)], start[np.uintp(row + block.z1 + 1)]
+                bodies = end - begin
+                tests += bodies
+                near = lanes_within(columns, begin, x, y, z, square) & ((1 << min(bodies, LANES)) - 1)
+                while near != 0:
+                    other = begin + lowest_bit(near)
+                    near &= near - 1
+                    close = compare(slot, other, other + 1, square, cells, keys, close)
+                if bodies > LANES:
+                    close = compare(slot, begin + LANES, end, square, cells, keys, close)
     return Found(close, tests)
 
 
@@ -130,15 +138,16 @@ def expected_work(seekers: Level, others: Level) -> float:
 
 @inner
 def compare(slot: int, begin: int, end: int, square: float, cells: Cells, keys: Keys, close: int) -> int:
-    """Put the body in a slot to the test with a run of others. Returns how many close pairs are found by now."""
-    slots, columns, radii = cells.slots, cells.columns, cells.radii
-    x, y, z, i = columns[0, slot], columns[1, slot], columns[2, slot], slots[slot, 1]
+    """Put the body in a slot to the test with a run of others, of which those with centres farther apart than the root
+    of `square`, m^2, are passed over. Returns how many close pairs are found by now."""
+    slots, columns = cells.slots, cells.columns
+    x, y, z, radius = columns[0, slot], columns[1, slot], columns[2, slot], columns[3, slot]
     for other in range(begin, end):
         dx, dy, dz = x - columns[0, other], y - columns[1, other], z - columns[2, other]
         near = dx * dx + dy * dy + dz * dz <= square
-        if near and touching(dx, dy, dz, radii[i] + radii[slots[other, 1]]):
+        if near and touching(dx, dy, dz, radius + columns[3, other]):
             if close < len(keys):
-                j = slots[other, 1]
+                i, j = slots[slot, 1], slots[other, 1]
                 keys[close] = min(i, j) << 32 | max(i, j)
             close += 1
     return close
@@ -152,15 +161,13 @@ class Overlapped(NamedTuple):
 
 
 @kernel
-def count_overlapped(bodies: Arrays) -> Overlapped:
+def count_overlapped(levels: Levels, columns: Floats) -> Overlapped:
     """How many cells the bodies overlap, as they were last sorted."""
-    cells = Cells(*bodies)
-    levels, slots, columns, radii = cells.levels, cells.slots, cells.columns, cells.radii
     most, total = 0, 0
     for index in range(len(levels)):
         level = levels[index]
         for slot in range(level.begin, level.end):
-            block = block_around(level, columns[0, slot], columns[1, slot], columns[2, slot], radii[slots[slot, 1]])
+            block = block_around(level, columns[0, slot], columns[1, slot], columns[2, slot], columns[3, slot])
             overlapped = (block.x1 - block.x0 + 1) * (block.y1 - block.y0 + 1) * (block.z1 - block.z0 + 1)
             most = max(most, overlapped)
             total += overlapped

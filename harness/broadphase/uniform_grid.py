@@ -38,14 +38,14 @@ class UniformGrid:
         levels = plan_levels(self.radii[members], level[members])
         self._half = np.array(box.half, np.float64)
         self._arrays: cells.Arrays = (
-            self.radii,
             members.astype(np.int32),
+            self.radii[members],
             levels,
             np.empty(int(levels["budget"].sum()) + 1, np.int32),
             np.empty(count, np.int32),
             np.empty(count, ROW),
             np.empty((count, 2), np.int32),
-            np.zeros((3, count + LANES)),
+            np.zeros((4, count + LANES)),
         )
         self._cells = Cells(*self._arrays)
         self._keys = np.empty(count + 1, np.int64)
@@ -77,7 +77,7 @@ class UniformGrid:
         At most 8, as a cell is never smaller than a body. The lattice ends with the outermost centres, and what sticks
         out is in no cell.
         """
-        overlapped = cells.count_overlapped(self._arrays)
+        overlapped = cells.count_overlapped(self._cells.levels, self._cells.columns)
         return overlapped.most, overlapped.total / max(1, len(self.radii))
 
 

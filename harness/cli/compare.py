@@ -277,7 +277,7 @@ def _asked(counts: Counts) -> str:
 def _sentence(case: Case) -> str:
     truth, asked = case.judgement, case.question
     verb = "are both" if case.both_wrong else "is"
-    about = "" if asked.query == "collision" else f" about {asked.text}"
+    about = "" if asked.query == "collision" else f" about {asked.text} ({case.error})"
     i, j = case.bodies
     state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
     return (

@@ -67,8 +67,9 @@ def compare_all(
         if budget.spent:
             budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.seconds:g} s were spent")
             continue
-        for name in names:
-            make_ready(MethodName.read(name, scene.shape, pose_set.question.query))
+        with budget.paused():
+            for name in names:
+                make_ready(MethodName.read(name, scene.shape, pose_set.question.query))
         progress(f"{', '.join(names)}: {what}")
         compared, hanging = _compare_at(pose_set, names, timeout, budget)
         for pair, found in compared.items():

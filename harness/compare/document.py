@@ -123,7 +123,7 @@ def _asked(case: Case) -> dict[str, Any]:
         return {}
     within = {"within": question.within} if question.query in NEAR_QUERIES else {"moment": case.moment}
     told = None if case.told is None or isinf(case.told) else case.told
-    return {"query": question.query, **within, "tolerance": question.tolerance, "told": told}
+    return {"query": question.query, **within, "tolerance": question.tolerance, "told": told, "error": case.error}
 
 
 def failure_row(failure: Failure) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import isinf
 
 from harness.compare.certificate import Judgement
 from harness.compare.free_run_pair import FreeRunPair
@@ -45,6 +46,23 @@ class Case:
     def both_wrong(self) -> bool:
         """Whether both agree on what is wrong."""
         return self.wrong not in self.backends
+
+    @property
+    def error(self) -> str:
+        """In which way an answer to a query other than collision is wrong; empty for collision.
+
+        "missed" of a pair that is not reported, "false" of one that is not near, "too wide" or "too narrow" of a gap,
+        "late" or "early" of a time; a hit that is none is called early.
+        """
+        if self.told is None:
+            return ""
+        if isinf(self.told):
+            return "missed"
+        if self.question.query == "impact":
+            return "late" if self.judgement.touching else "early"
+        if self.question.query == "tolerance":
+            return "false"
+        return "too wide" if self.told > self.judgement.gap else "too narrow"
 
 
 @dataclass(frozen=True)

@@ -208,14 +208,6 @@ def poses_are_frames(values: Values) -> Conflict | None:
     return None
 
 
-def events_ignore_no_pair(values: Values) -> Conflict | None:
-    """The search for events knows all pairs or none."""
-    if values["ignore"] and not ALGORITHMS[values["algorithm"]].stepped:
-        message = "ignored pairs are for algorithms that step from frame to frame; algorithm {} computes events"
-        return Conflict(message, ("ignore", "algorithm"), excludable=True)
-    return None
-
-
 def bodies_pass_through(values: Values) -> Conflict | None:
     """A response answers pairs that touch; without one the motion is the same for every method and every query."""
     query, response = values["query"], values["response"]
@@ -245,7 +237,6 @@ POINT: tuple[Rule, ...] = (
     *ENGINE,
     backend_has_the_shape,
     backend_has_gaps_of_the_shape,
-    events_ignore_no_pair,
     poses_are_frames,
     bodies_are_somewhere,
     bodies_pass_through,

@@ -87,12 +87,6 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
         for point in resolved:
             first.setdefault(_key(point), point)
         unique = list(first.values())
-        if measure.reference is not None and any(map(_ignores_and_answers, unique)):
-            message = (
-                "a reference with response reflect or elastic is computed from event to event, which ignores no pair"
-            )
-            problems.add(("measure", "reference", KEY), f"{message}; leave out scene.ignore, or set response none")
-            return expansion
         if measure.reference is not None and any(map(_has_no_reference, unique)):
             message = "a reference knows gaps of recorded poses and no hits: choose query tolerance or distance"
             problems.add(("measure", "reference", KEY), message)
@@ -267,10 +261,6 @@ def _recorded(points: list[Resolved], problems: FileProblems) -> list[Resolved]:
                 problems.add(origin, f"{leaf} has no effect with poses, which tell all motion; leave it out")
         found.append({**point, "response": LeafValue("none", None, identity("none"))})
     return found
-
-
-def _ignores_and_answers(point: Resolved) -> bool:
-    return bool(point["ignore"].value) and point["response"].value != "none"
 
 
 def _has_no_reference(point: Resolved) -> bool:

@@ -86,16 +86,15 @@ class Queried:
         if name.query not in queries(self.backend):
             answered = ", ".join(queries(self.backend))
             raise InputError(f'backend "{name.backend}" cannot be asked query {name.query}, only {answered}')
-        self._accurate = set_accuracy(self.backend, tolerance)
+        set_accuracy(self.backend, tolerance)
 
     def tolerance(self, shape: Shape) -> float:
-        """Of size, by how much a gap, or the gap at a time of impact, may be off."""
+        """Of size, by how much a gap, or the gap at a time of impact, may be off: as was asked for, or is declared."""
+        asked = self._tolerance if self._name.query != "tolerance" else 0.0
         if not self._name.kernels:
-            declared = self.backend.tolerance(shape)
-            return max(declared, self._tolerance) if self._accurate else declared
-        # kernels decide exactly whether a gap is too wide, and spheres are solved in closed form
-        exact = shape == "sphere" or self._name.query == "tolerance"
-        return _ROUNDING if exact else max(_ROUNDING, self._tolerance)
+            return max(self.backend.tolerance(shape), asked)
+        # spheres are solved in closed form, and whether a gap is too wide is decided exactly
+        return _ROUNDING if shape == "sphere" else max(_ROUNDING, asked)
 
     def load(self, scene: Scene) -> None:
         """Hold a scene."""

@@ -16,7 +16,7 @@ from multiprocessing.connection import Connection
 
 from harness.backends import registry
 from harness.backends.statement import ask_strangers_here
-from harness.process_limits import adopt_orphans, die_with_parent
+from harness.process_limits import adopt_orphans, die_with_parent, memory_of_stranger_limited
 from harness.runner.isolation import run_isolated
 from harness.runner.task import Task
 from harness.runner.warm_up import warm_up
@@ -43,7 +43,8 @@ def _prepare(channel: Connection, backend: str) -> None:
     """Import the backend, telling the other side when it begins and when it is done."""
     channel.send("started")
     if backend in registry.names():
-        with suppress(BaseException):  # a run will say it, in its report
+        # a run will say what goes wrong, in its report, and has a limit of its own
+        with suppress(BaseException), memory_of_stranger_limited():
             registry.create(backend)
     channel.send("ready")
     die_with_parent(False)

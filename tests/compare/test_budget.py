@@ -1,5 +1,7 @@
 """A comparison that is to end early says what it left out."""
 
+import time
+
 from harness.compare.budget import Budget
 from harness.compare.comparison import compare
 from harness.compare.poses import flown
@@ -18,6 +20,13 @@ def test_without_time_nothing_is_asked_and_all_of_it_is_told():
     found = compare([flown(random_scene("sphere", 4, 3.0), 9, 0.1)], ["fcl", "pybullet"], budget=budget)
     assert (found.tallies, found.passed) == ([], True)
     assert budget.left_out == ["4 bodies, shape sphere: not asked, 1e-09 s were spent"]
+
+
+def test_what_a_pause_takes_does_not_count():
+    budget = Budget(0.5)
+    with budget.paused():
+        time.sleep(0.6)
+    assert not budget.spent
 
 
 def test_json_says_what_was_left_out(tmp_path, capsys):

@@ -53,6 +53,10 @@ def test_a_liar_is_caught_and_nobody_else_is_accused(name, liar):
     assert named(found) == {name}
     assert not found.passed
     case = found.cases[0]
+    errors = {one.error for one in found.cases}
+    kind = {"gaps-too-wide": "too wide", "late": "late", "early": "early"}.get(name, "missed")
+    assert kind in errors
+    assert errors <= {kind, "missed"}
     assert (case.question, case.backends) == (question, ("fcl", name))
     if name == "early":
         assert not case.judgement.touching  # apart when it says that they touch
@@ -118,7 +122,7 @@ def test_a_saved_disagreement_shows_the_same_again(name, query, within, liar, tm
         again = json.loads(capsys.readouterr().out)["cases"]
         assert [one["wrong"] for one in again] == [name]
         assert main(["compare", file]) == 1
-        assert f"{name} is wrong about {query}" in capsys.readouterr().out
+        assert f"{name} is wrong about {query} " in capsys.readouterr().out
 
 
 def test_budget_and_every_are_said_with_the_question(tmp_path, capsys):

@@ -109,13 +109,13 @@ def test_a_case_has_its_proof_picture_and_file(pages):
 
 def test_a_case_of_another_query_says_what_was_asked_and_told():
     proof = {"kind": "nearest points and separating planes", "first": [[0, "1"]], "second": [[2, "1"]], "planes": 3}
-    asked = {"query": "distance", "within": 0.5, "tolerance": 1e-6, "told": 0.25}
+    asked = {"query": "distance", "within": 0.5, "tolerance": 1e-6, "told": 0.25, "error": "too wide"}
     gap = {"gap": 0.125, "certificate": proof | {"lower": 0.125, "upper": 0.125, "touching": False}}
     found = sentences_of(CASE | asked | {"minimised": {"bodies": [0, 1]} | gap | asked})
     assert found[0] == "Bodies 0 and 1 are 0.125 m apart; odd says that they are 0.25 m apart."
-    assert found[1] == "Asked: distance within 0.500 m."
+    assert found[1] == "Asked: distance within 0.500 m. The answer is too wide a gap."
     assert "3 planes keep all parts of one body at least 0.125 m from all parts of the other" in found[2]
-    late = {"query": "impact", "tolerance": 1e-6, "moment": 0.0625, "told": None}
+    late = {"query": "impact", "tolerance": 1e-6, "moment": 0.0625, "told": None, "error": "missed"}
     found = sentences_of(CASE | late | {"minimised": SHOWN["minimised"] | late})
     assert found[0].endswith("0.0625 s after the start of the frame; odd says that they do not begin to touch in it.")
     assert found[-1] == "2 bodies in one frame show it by themselves."

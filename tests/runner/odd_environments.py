@@ -2,6 +2,9 @@
 
     python tests/runner/odd_environments.py [ENVIRONMENT ...]
 
+Each command takes a second or a few of CPU time where the kernels of the sources are kept, so that the plain
+environment always comes first; where they are not, and may not be written, each would compile them for itself.
+
 Without a home, with folders that may not be written to, with little of everything, closed streams, other languages,
 warnings as errors. Prints what came of each, and how many tries went wrong: a trace of the program's own code, an exit
 code that is none of ours, silence, or work that was not done where nothing kept it from being done.
@@ -22,7 +25,7 @@ from pathlib import Path
 EXPERIMENT = """
 title: Odd
 scene: {mesh: cube.ply, shape: hull, count: 4, box: [5, 5, 5]}
-motion: {duration: 0.2, response: none}
+motion: {duration: 0.05, response: none}
 engine: {algorithm: grid}
 measure: {repeats: 1, reference: {tolerance: 1.0e-8}}
 """
@@ -32,7 +35,7 @@ COMMANDS = {
     "report": ["report", "--db", "odd.db", "--out", "pages"],
     "inspect": ["mesh", "inspect", "cube.ply", "--json"],
     "view": ["view", "odd.yaml", "--out", "replay.html"],
-    "compare": ["compare", "odd.yaml", "--backends", "fcl,pybullet", "--json"],
+    "compare": ["compare", "odd.yaml", "--backends", "fcl,pybullet", "--budget", "2", "--json"],
     "list": ["list", "--json"],
     "plan": ["plan", "odd.yaml"],
     "trace": ["trace", "odd.yaml", "--json"],
@@ -40,7 +43,7 @@ COMMANDS = {
     "new": ["new", "another.yaml"],
 }
 JSON = ("export", "inspect", "compare", "list", "trace")
-LONGEST = 600.0  # s for a command, on a machine with other things to do
+LONGEST = 300.0  # s for a command, on a machine with other things to do
 NOWHERE = "/there/is/no/such/folder"
 
 
@@ -51,6 +54,7 @@ class Environment:
     Parameters
     ----------
     may_fail : whether it may keep commands from their work, so that a sentence and exit code 1 or 2 will do
+    longest : s for a command
     prepare : what is done to the folder of the work and the one above it, before
     """
 
@@ -60,6 +64,7 @@ class Environment:
     may_fail: bool = False
     prepare: Callable[[Path], None] = lambda _: None
     output: str | None = None
+    longest: float = LONGEST
 
     def begin(self) -> None:
         """In the process that becomes the command."""
@@ -77,7 +82,7 @@ def _locked(folder: Path) -> None:
 
 ALL = ("HOME", "TMPDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")
 ENVIRONMENTS = {
-    "plain": Environment(),
+    "plain": Environment(longest=4 * LONGEST),  # it compiles what the others find
     "no HOME": Environment({"HOME": None}),
     "HOME that is not there": Environment({"HOME": NOWHERE}),
     "HOME that may not be written to": Environment({"HOME": "{folder}/locked"}, prepare=_locked),
@@ -116,11 +121,14 @@ def attempt(name: str, folder: Path, words: list[str]) -> tuple[int, str, str]:
         if value is not None:
             variables[variable] = value.replace("{folder}", str(folder))
     with open(odd.output or os.devnull, "w") as lost:
-        done = subprocess.run(
-            [sys.executable, "-m", "harness", *words],
-            cwd=folder, env=variables, stdin=subprocess.DEVNULL, stdout=lost if odd.output else subprocess.PIPE,
-            stderr=subprocess.PIPE, preexec_fn=odd.begin, timeout=LONGEST, text=True, errors="replace",
-        )  # fmt: skip
+        try:
+            done = subprocess.run(
+                [sys.executable, "-m", "harness", *words],
+                cwd=folder, env=variables, stdin=subprocess.DEVNULL, stdout=lost if odd.output else subprocess.PIPE,
+                stderr=subprocess.PIPE, preexec_fn=odd.begin, timeout=odd.longest, text=True, errors="replace",
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return -1, "", f"Traceback: it did not end within {odd.longest:g} s"
     return done.returncode, done.stdout or "", done.stderr
 
 
@@ -157,7 +165,7 @@ def folder_for(name: str, above: Path) -> Path:
 def main(names: list[str]) -> None:
     """Every environment, every command."""
     tries, failures = 0, 0
-    for name in names or ENVIRONMENTS:
+    for name in dict.fromkeys(["plain", *(names or ENVIRONMENTS)]):
         with tempfile.TemporaryDirectory() as above:
             folder, said = folder_for(name, Path(above)), []
             for command, words in COMMANDS.items():

@@ -2,7 +2,7 @@
 
     python -m tests.scene.record_scenes FOLDER
 
-writes bin.npz, bin.yaml, bin.off, arm.npz and arm.yaml. What it is made of stands in the heads of the YAML files.
+writes bin.npz, bin-at-rest.npz, bin.off, arm.npz, and the bodies of both as the YAML files list them.
 """
 
 import json
@@ -22,17 +22,19 @@ SEED = 259
 FLOOR, RIM, HEIGHT, WALL = 1.1, 1.8, 1.1, 0.1
 BODIES = 60
 STEP, STEPS_A_FRAME, FRAMES = 1 / 480, 20, 200
+FRICTION = {"rollingFriction": 0.02, "spinningFriction": 0.02, "linearDamping": 0.2, "angularDamping": 0.3}
 # Frames at the end, in which all bodies rest.
 REST = 12
+# m. pybullet takes the origin of a file for the centre of mass: these have it in their middle.
 SIZES = {
+    "bunny.obj": 0.34,
     "cube.obj": 0.32,
     "domino/domino.obj": 0.34,
     "jenga/jenga.obj": 0.4,
     "random_urdfs/000/000.obj": 0.34,
-    "soccerball.obj": 0.3,
+    "random_urdfs/005/005.obj": 0.38,
     "sphere_smooth.obj": 0.26,
-    "teddy2_VHACD_CHs.obj": 0.42,
-    "toys/prism.obj": 0.34,
+    "stone.obj": 0.34,
 }
 
 ARM = "kuka_iiwa/model.urdf"
@@ -45,7 +47,6 @@ OBSTACLES = [
     ("random_urdfs/000/000.obj", 0.3, (0.4, -0.4, 0.9)),
 ]
 ARM_FRAMES, ARM_SECONDS = 240, 8.0
-
 
 STILL = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
@@ -105,12 +106,9 @@ def fill_bin():
         turn = rng.normal(size=4)
         at = [x + rng.uniform(-0.01, 0.01), y + rng.uniform(-0.01, 0.01), 0.4 + 0.45 * layer]
         shape = shapes[names[number % len(names)]]
-        bodies.append(
-            pybullet.createMultiBody(0.2, shape, basePosition=at, baseOrientation=turn / np.linalg.norm(turn))
-        )
-        pybullet.changeDynamics(
-            bodies[-1], -1, rollingFriction=0.01, spinningFriction=0.01, linearDamping=0.2, angularDamping=0.2
-        )
+        turn /= np.linalg.norm(turn)
+        bodies.append(pybullet.createMultiBody(0.2, shape, basePosition=at, baseOrientation=turn))
+        pybullet.changeDynamics(bodies[-1], -1, **FRICTION)
     poses = []
     for _ in range(FRAMES):
         poses.append([STILL, *(pybullet.getBasePositionAndOrientation(body) for body in bodies)])
@@ -157,15 +155,12 @@ def main(folder):
     save(folder / "bin.npz", time, poses)
     save(folder / "bin-at-rest.npz", time[-REST:], poses[-REST:])
     save(folder / "arm.npz", *sweep_arm())
-    rows = ["{mesh: bin.off, size: native}"]
-    rows += [
-        f"{{mesh: {json.dumps(package(name))}, size: {SIZES[name]}}}"
-        for name in (list(SIZES)[k % 8] for k in range(BODIES))
-    ]
-    (folder / "bin-bodies.txt").write_text("\n".join(f"    - {row}" for row in rows) + "\n")
-    arm = [f"{{mesh: {json.dumps(package(name))}, size: native}}" for name in LINKS]
-    arm += [f"{{mesh: {json.dumps(package(name))}, size: {size}}}" for name, size, _ in OBSTACLES]
-    (folder / "arm-bodies.txt").write_text("\n".join(f"    - {row}" for row in arm) + "\n")
+    names = [list(SIZES)[number % len(SIZES)] for number in range(BODIES)]
+    of_bin = [("bin.off", "native"), *((package(name), SIZES[name]) for name in names)]
+    of_arm = [(package(name), "native") for name in LINKS] + [(package(name), size) for name, size, _ in OBSTACLES]
+    for file, bodies in (("bin-bodies.txt", of_bin), ("arm-bodies.txt", of_arm)):
+        rows = [f"    - {{mesh: {json.dumps(name)}, size: {size}}}\n" for name, size in bodies]
+        (folder / file).write_text("".join(rows))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,16 @@ from typing import Any
 
 from harness.report.quantity import number
 
+_ERRORS = {
+    "missed": "missing",
+    "false": "false: they are farther apart",
+    "too wide": "too wide a gap",
+    "too narrow": "too narrow a gap",
+    "late": "late",
+    "early": "early, if they meet at all",
+}
+"""In which way an answer is wrong, to follow "The answer is"."""
+
 
 def sentences_of(row: Mapping[str, Any]) -> list[str]:
     """What is true, who is wrong, the proof, where it was seen, and how small it was made."""
@@ -19,7 +29,7 @@ def sentences_of(row: Mapping[str, Any]) -> list[str]:
     when = f" {_digits(small['moment'])} s after the start of the frame" if "moment" in small else ""
     sentences = [
         f"Bodies {i} and {j} {state}{when}; {row['wrong']} {verb} that they {_said(small)}.",
-        *([f"Asked: {row['query']}{_within(row)}."] if "query" in row else []),
+        *([f"Asked: {row['query']}{_within(row)}. The answer is {_ERRORS[row['error']]}."] if "query" in row else []),
         proof_text(proof, (i, j)),
         f"Seen at {row['certificate']['pose']} (question {row['certificate']['call']} of its scene), "
         f"{' against '.join(row['backends'])}; there the gap was {number(row['gap'])} m.",
