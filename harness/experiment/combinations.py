@@ -71,22 +71,22 @@ def has_count_or_bodies(values: Values) -> Conflict | None:
 
 def has_one_box(values: Values) -> Conflict | None:
     """The box has given sides, or sides that follow from the bodies' size."""
-    if values["poses"] is not None:
-        return None
-    if values["box"] is None and values["box_ratio"] is None:
-        return Conflict("a scene needs box ([x, y, z] in m) or box_ratio ((mean size / side)²)", ("box", "box_ratio"))
     if values["box"] is not None and values["box_ratio"] is not None:
         return Conflict("box and box_ratio exclude each other; give one of them", ("box_ratio", "box"))
     return None
 
 
-def bodies_are_somewhere(values: Values) -> Conflict | None:
-    """A body that is given one by one has a place, or recorded poses have it."""
-    recorded = values["poses"] is not None
-    for number, body in enumerate(values["bodies"] or ()):
-        if body.position is None and not recorded:
-            return Conflict(f"bodies[{number}] needs a position, [x, y, z] in m", ("bodies",))
-        if recorded and (body.position is not None or any((*body.velocity, *body.spin))):
+def has_a_box(values: Values) -> Conflict | None:
+    """Bodies that fly need a box; recorded poses are wherever they are."""
+    if values["box"] is None and values["box_ratio"] is None and values["poses"] is None:
+        return Conflict("a scene needs box ([x, y, z] in m) or box_ratio ((mean size / side)²)", ("box", "box_ratio"))
+    return None
+
+
+def poses_say_where_bodies_are(values: Values) -> Conflict | None:
+    """A body has a place of its own, or recorded poses have it."""
+    for number, body in enumerate(values["bodies"] or () if values["poses"] is not None else ()):
+        if body.position is not None or any((*body.velocity, *body.spin)):
             message = f"poses say where bodies are; bodies[{number}] can have no position, velocity or spin of its own"
             return Conflict(message, ("poses", "bodies"))
     return None
@@ -233,11 +233,12 @@ ENGINE: tuple[Rule, ...] = (
 )
 POINT: tuple[Rule, ...] = (
     *SCENE,
+    has_a_box,
     *MOTION,
     *ENGINE,
     backend_has_the_shape,
     backend_has_gaps_of_the_shape,
     poses_are_frames,
-    bodies_are_somewhere,
+    poses_say_where_bodies_are,
     bodies_pass_through,
 )

@@ -249,10 +249,14 @@ def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> It
 
 
 def _recorded(points: list[Resolved], problems: FileProblems) -> list[Resolved]:
-    """Points whose poses are recorded have no response; what else they tell may not be given beside them."""
+    """Points whose poses are recorded have no response; what else they tell may not be given beside them.
+
+    Of others each body has a place.
+    """
     found = []
     for point in points:
         if point["poses"].value is None:
+            _require_places(point["bodies"], problems)
             found.append(point)
             continue
         for leaf in TOLD_BY_POSES:
@@ -261,6 +265,13 @@ def _recorded(points: list[Resolved], problems: FileProblems) -> list[Resolved]:
                 problems.add(origin, f"{leaf} has no effect with poses, which tell all motion; leave it out")
         found.append({**point, "response": LeafValue("none", None, identity("none"))})
     return found
+
+
+def _require_places(bodies: LeafValue, problems: FileProblems) -> None:
+    for number, body in enumerate(bodies.value or ()):
+        if body.position is None and bodies.origin is not None:
+            place = (*bodies.origin, number) if isinstance(bodies.origin, tuple) else bodies.origin
+            problems.add(place, '"position" is missing')
 
 
 def _has_no_reference(point: Resolved) -> bool:

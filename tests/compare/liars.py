@@ -183,7 +183,7 @@ class Right(Fcl):
     def impacts(self, positions, quaternions, velocities, spins, duration):
         middle = positions + 0.5 * duration * velocities
         arrays = [part.copy() for part in (positions, quaternions, middle, velocities, spins)]
-        return self.asked("impact", 0.0).impacts(FrameMotion(*arrays, True), duration)
+        return self.asked("impact", 0.0).impacts(FrameMotion(*arrays, True, duration), duration)
 
 class Plugin(Right):
     name = {name!r}

@@ -38,6 +38,7 @@ def test_everything_but_title_bodies_box_and_mesh_has_the_default_of_the_contrac
         "overlap": "reject",
         "seed": 259,
         "ignore": [],
+        "poses": None,
         "duration": 10.0,
         "dt": 1 / 60,
         "response": "reflect",
