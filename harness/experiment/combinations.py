@@ -186,14 +186,6 @@ def backend_answers_the_query(values: Values) -> Conflict | None:
     return None
 
 
-def events_ignore_no_pair(values: Values) -> Conflict | None:
-    """The search for events knows all pairs or none."""
-    if values["ignore"] and not ALGORITHMS[values["algorithm"]].stepped:
-        message = "ignored pairs are for algorithms that step from frame to frame; algorithm {} computes events"
-        return Conflict(message, ("ignore", "algorithm"), excludable=True)
-    return None
-
-
 def bodies_pass_through(values: Values) -> Conflict | None:
     """A response answers pairs that touch; without one the motion is the same for every method and every query."""
     query, response = values["query"], values["response"]
@@ -223,6 +215,5 @@ POINT: tuple[Rule, ...] = (
     *ENGINE,
     backend_has_the_shape,
     backend_has_gaps_of_the_shape,
-    events_ignore_no_pair,
     bodies_pass_through,
 )

@@ -84,12 +84,6 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
         for point in resolved:
             first.setdefault(_key(point), point)
         unique = list(first.values())
-        if measure.reference is not None and any(map(_ignores_and_answers, unique)):
-            message = (
-                "a reference with response reflect or elastic is computed from event to event, which ignores no pair"
-            )
-            problems.add(("measure", "reference", KEY), f"{message}; leave out scene.ignore, or set response none")
-            return expansion
         expansion.points = tuple(_points(unique, measure.reference))
         expansion.swept = _swept(unique, mentioned)
     return expansion
@@ -245,10 +239,6 @@ def _points(resolved: Sequence[Resolved], reference: ReferenceSpec | None) -> It
             parts[section] = made[key]
         shape: Shape = most_exact if parts["scene"].mesh_names else "sphere"
         yield Point(**parts, reference=Reference(reference, shape) if reference else None)
-
-
-def _ignores_and_answers(point: Resolved) -> bool:
-    return bool(point["ignore"].value) and point["response"].value != "none"
 
 
 def _has_a_mesh(point: Resolved) -> bool:

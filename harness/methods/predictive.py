@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.arrays import Floats
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
+from harness.broadphase.ignored import asked_about
 from harness.measure.clocks import Clock
 from harness.measure.conservation import Conservation, energy
 from harness.measure.kinetics import Kinetics
@@ -194,6 +195,7 @@ class EventDriven:
                 record=record,
                 states=states,
                 tolerance=self._tolerance,
+                ignored=self._scene.ignored,
             )
         return Simulation(
             bodies.positions,
@@ -206,6 +208,7 @@ class EventDriven:
             record=record,
             states=states,
             search="lists" if self._plan.keeps("neighbour_lists") else "cells",
+            ignored=self._scene.ignored,
         )
 
 
@@ -254,11 +257,11 @@ class _Depth:
     def __init__(self, scene: Scene) -> None:
         self.deepest = 0.0
         self._trajectory = Trajectory(scene.bodies, scene.box, folded=False, turning=scene.shape != "sphere")
-        self._grid = HierarchicalGrid(scene.bodies.radii, scene.box)
+        self._broad_phase = asked_about(HierarchicalGrid(scene.bodies.radii, scene.box), scene.ignored)
         self._penetration = Penetration(scene)
 
     def measure(self, positions: Floats, time: float) -> None:
-        pairs = self._grid.close_pairs(positions)
+        pairs = self._broad_phase.close_pairs(positions)
         self._trajectory.move_to(time)
         self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))
 

@@ -207,14 +207,17 @@ class Cluster:
                 return self._open.enter_context(Client(self._address, timeout=CONNECT_TIMEOUT))
             except (OSError, ValueError) as error:
                 raise InputError(f"{self._option}: no scheduler answers: {error}") from error
-        with _inherited_by_children(signal.SIGINT, signal.SIG_IGN):  # the sweeping process answers Ctrl-C
-            cluster = LocalCluster(
-                n_workers=int(self._address.removeprefix(LOCAL)),
-                threads_per_worker=1,
-                memory_limit=0,  # runs have limits of their own
-                dashboard_address=None,
-                silence_logs=logging.CRITICAL,
-            )
+        try:
+            with _inherited_by_children(signal.SIGINT, signal.SIG_IGN):  # the sweeping process answers Ctrl-C
+                cluster = LocalCluster(
+                    n_workers=int(self._address.removeprefix(LOCAL)),
+                    threads_per_worker=1,
+                    memory_limit=0,  # runs have limits of their own
+                    dashboard_address=None,
+                    silence_logs=logging.CRITICAL,
+                )
+        except (OSError, RuntimeError) as error:  # as Dask says that a process, or its files, cannot be had
+            raise InputError(f"{self._option}: the workers cannot be started: {error}") from error
         self._open.enter_context(cluster)
         return self._open.enter_context(Client(cluster))
 

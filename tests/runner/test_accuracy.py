@@ -53,6 +53,19 @@ def test_predictive_sees_every_hit_when_it_happens():
     assert "missed_hits_expected" not in found
 
 
+@pytest.mark.parametrize("response", ["none", "elastic"])
+def test_a_reference_ignores_the_pairs_that_its_scene_ignores(response):
+    ignored = [[i, j] for i in range(12) for j in range(i + 1, 12) if (i + j) % 2]
+    some = metrics(GAS.replace("speed", f"ignore: {ignored}, speed"), algorithm="predictive", response=response)
+    every = metrics(algorithm="predictive", response=response)
+    if response == "none":
+        assert some["missed_hits"] == some["extra_hits"] == 0
+        assert 0 < some["reference_hits"] < every["reference_hits"]
+    else:
+        assert some["divergence_time"] == 3
+        assert 0 < some["pair_hits"] < every["pair_hits"]
+
+
 @pytest.mark.slow
 def test_a_fast_body_tunnels_as_often_as_its_contacts_are_shorter_than_a_frame():
     """One body flies through another at rest; each contact of length l is missed with probability 1 - l / dt."""

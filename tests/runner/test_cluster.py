@@ -177,6 +177,15 @@ def test_without_the_extra_the_command_to_install_it_is_said(small, capsys, monk
     assert "pip install 'harness[cluster]'" in capsys.readouterr().err
 
 
+def test_workers_that_cannot_be_started_are_a_sentence(small, capsys, monkeypatch):
+    def refuse(**_):
+        raise RuntimeError("Nanny failed to start.")
+
+    monkeypatch.setattr("distributed.LocalCluster", refuse)
+    assert main(["sweep", "small.yaml", "--jobs", "2"]) == 2
+    assert "local:2: the workers cannot be started: Nanny failed to start." in capsys.readouterr().err
+
+
 def exit_code(words):
     try:
         return main(words)

@@ -19,6 +19,7 @@ from harness.motion.predictive.clock import advance, rebase, relative
 from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode, Stop, Task
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
 from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
+from harness.motion.predictive.ignored import without_ignored
 from harness.motion.predictive.lookahead import prefetch_ahead
 from harness.motion.predictive.neighbours import renew, time_to_leave
 from harness.motion.predictive.numerics import time_to_plane
@@ -117,7 +118,7 @@ def predict(world: World, k: int, now: float, after: FollowUp) -> None:
         count = int(world.lists.members[k].count)
         candidates = world.lists.members[k].who[:]
     else:
-        count = gather_candidates(world, k, now, after.layer)
+        count = without_ignored(world, k, candidates, gather_candidates(world, k, now, after.layer))
         counts.pair_tests -= after.task == Task.PREDICT  # itself among them: zero gap, no hit
     counts.pair_tests += count
     if world.rules.response == ResponseCode.NONE:

@@ -11,6 +11,7 @@ from math import inf, sqrt
 
 from harness.kernel import step
 from harness.motion.predictive.cells import AROUND, block, gather_block, insert_by_position, remove
+from harness.motion.predictive.ignored import without_ignored
 from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
 
 
@@ -27,7 +28,7 @@ def renew(world: World, k: int) -> bool:
     remove(cells, spheres.schedule, k)
     insert_by_position(cells, spheres, k)
     around = block(cells.grids[0], place.cell[0], place.cell[1], place.cell[2], AROUND)
-    count = gather_block(cells, cells.grids[0], around, found, 0)
+    count = without_ignored(world, k, found, gather_block(cells, cells.grids[0], around, found, 0))
     degree = 0
     room = True
     for m in range(count):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.arrays import Pairs
 from harness.motion.predictive.codes import Event, NeighbourSearch
 from harness.motion.predictive.grids import empty_grids, size_classes
+from harness.motion.predictive.ignored import ignored_by_label
 from harness.motion.predictive.initial import InitialState
 from harness.motion.predictive.order import along_curve
 from harness.motion.predictive.state import (
@@ -37,13 +39,14 @@ from harness.motion.predictive.state import (
 LOG_SIZE = 1 << 16
 
 
-def prepare(start: InitialState, rules: Rules, record: bool, states: bool) -> World:
+def prepare(start: InitialState, rules: Rules, ignored: Pairs, record: bool, states: bool) -> World:
     """A world at time zero: no sphere stands in a cell yet, and all events are unscheduled.
 
     Parameters
     ----------
     start : InitialState
     rules : Rules
+    ignored : (m, 2) int array, pairs i < j that are never asked about, each once
     record : whether events are kept
     states : whether the states of their spheres are kept with them
     """
@@ -66,6 +69,7 @@ def prepare(start: InitialState, rules: Rules, record: bool, states: bool) -> Wo
         queue=unscheduled(n),
         cells=empty_grids(start.half_box, start.radii, rules.skin),
         lists=empty_lists(motions, rules.neighbours),
+        ignored=ignored_by_label(n, ignored),
         rules=rules,
         totals=no_totals(),
         log=np.zeros(LOG_SIZE if record else 0, dtype=EVENT),

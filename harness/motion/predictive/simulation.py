@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from harness.arrays import Pairs
 from harness.errors import InputError
 from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
 from harness.motion.predictive.flight import fly, populate
@@ -35,6 +36,7 @@ class Simulation:
     record : keep the events, for `events` and `take_events`
     states : keep the states of their spheres as well, for `take_states`
     search : 'cells', 'lists', or None to choose by packing
+    ignored : (m, 2) int array of pairs i < j that fly through each other unnoticed, each once; None: no such pairs
 
     Raises
     ------
@@ -67,6 +69,7 @@ class Simulation:
         record: bool = False,
         states: bool = False,
         search: str | None = None,
+        ignored: Pairs | None = None,
     ) -> None:
         start = check(positions, velocities, radii, masses, half_box)
         if response not in RESPONSES:
@@ -78,7 +81,9 @@ class Simulation:
             raise InputError(f'search "{search}" is not possible for these spheres')
         self._chunks: list[NDArray[np.void]] = []
         self._states: list[NDArray[np.void]] = []
-        self._world = prepare(start, make_rules(start, response, float(restitution), search), record, states)
+        rules = make_rules(start, response, float(restitution), search)
+        none = np.empty((0, 2), np.int64)
+        self._world = prepare(start, rules, none if ignored is None else ignored, record, states)
         self._start = start
         self._start_virial = self._momentum_by_position(start.positions)
         self.time = 0.0

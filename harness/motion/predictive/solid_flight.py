@@ -17,6 +17,7 @@ from harness.motion.predictive.clock import advance, relative, shift_times
 from harness.motion.predictive.codes import Event, Phase, ResponseCode, Stop, Task
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
 from harness.motion.predictive.hits import advance_to_plane, hit_pair, note_onset, reflect_from_wall
+from harness.motion.predictive.ignored import without_ignored
 from harness.motion.predictive.narrow_search import search_pair, search_wall
 from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
@@ -149,7 +150,7 @@ def predict(solid: SolidWorld, k: int, now: float, after: FollowUp) -> None:
         windows.heads[k] = NOBODY
         open_wall_windows(solid, k, now)
         world.totals.counts[0].predictions += 1
-    count = gather_candidates(world, k, now, after.layer)
+    count = without_ignored(world, k, world.scratch.found, gather_candidates(world, k, now, after.layer))
     world.totals.counts[0].pair_tests += count - (after.layer.axis == ALL)
     for m in range(count):
         p = int(world.scratch.found[m])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from harness.arrays import Pairs
 from harness.motion.predictive.codes import Stop
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_flight import fly_solids
@@ -26,7 +27,7 @@ class SolidSimulation(Simulation):
     bodies : Bodies
     box : Box
     form : Form of the bodies
-    response, restitution, record, states : as of `Simulation`
+    response, restitution, record, states, ignored : as of `Simulation`
     tolerance : gap, relative to the mean size of two bodies, at which surfaces count as touching
     """
 
@@ -44,6 +45,7 @@ class SolidSimulation(Simulation):
         record: bool = False,
         states: bool = False,
         tolerance: float = 1e-6,
+        ignored: Pairs | None = None,
     ) -> None:
         # Spheres that meet when the shapes inside can be within the tolerance of each other
         radii = bodies.radii * (1.0 + tolerance)
@@ -58,6 +60,7 @@ class SolidSimulation(Simulation):
             record=record,
             states=states,
             search="cells",
+            ignored=ignored,
         )
         # The narrow search takes the time, not the memory: there is no need to keep neighbours together
         self._world = self._world._replace(

@@ -187,6 +187,13 @@ class Lists(NamedTuple):
     members: Records  # (n,) of NEIGHBOURS
 
 
+class Ignored(NamedTuple):
+    """Pairs that are never asked about, by label; each stands here twice. Empty arrays if there are none."""
+
+    first: Longs  # (n + 1,) place in `others` of the first partner that each sphere ignores
+    others: Longs  # (2 pairs,) those partners, in ascending order for each sphere
+
+
 class Rules(NamedTuple):
     """What stays the same during a run."""
 
@@ -231,6 +238,7 @@ class World(NamedTuple):
     queue: EventQueue
     cells: Cells
     lists: Lists
+    ignored: Ignored
     rules: Rules
     totals: Totals
     log: Records  # a chunk of recorded EVENTs; no room means no recording
