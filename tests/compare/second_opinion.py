@@ -56,7 +56,7 @@ def opinions(count, meshes=MESHES, families=FAMILIES):
     for name in meshes:
         mesh = MESHES[name]()
         for family in (family for kind, family in kinds if kind == name):
-            for poses in family_poses(family, "mesh", mesh, each):
+            for poses in family_poses(family, "mesh", (mesh,), each):
                 sizes = poses.scene.bodies.sizes.tolist()
                 for pose in poses.poses(poses.scene):
                     asked += 1

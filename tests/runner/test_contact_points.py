@@ -7,7 +7,7 @@ import pytest
 
 from harness.experiment.load import load_text
 from harness.runner.execute import execute
-from harness.runner.servers import mesh_of
+from harness.runner.servers import files_of
 from harness.scene.mesh_child import open_all
 
 TWO = """
@@ -23,7 +23,7 @@ def recorded(shape, engine, still="[0, 0, 0]"):
     mesh = "" if shape == "sphere" else "mesh: cube.ply,"
     experiment = load_text(TWO.format(shape=shape, mesh=mesh, engine=engine, still=still), Path("two.yaml"))
     point = experiment.points[0]
-    found = execute(point, mesh_of(experiment, point, open_all(experiment.mesh_paths.values())), recorded=True)
+    found = execute(point, files_of(experiment, point, open_all(experiment.mesh_paths.values())), recorded=True)
     return found.recording
 
 
@@ -53,6 +53,6 @@ def test_lines_are_between_the_near_points_of_their_frame(query):
 def test_bodies_at_rest_have_their_line_in_every_frame():
     text = TWO.format(shape="sphere", mesh="", engine="query: distance, within: 2", still="[0, 0, 0]")
     experiment = load_text(text.replace("[-1, 0, 0]", "[0, 0, 0]"), Path("two.yaml"))
-    found = execute(experiment.points[0], None, recorded=True).recording
+    found = execute(experiment.points[0], files_of(experiment, experiment.points[0], {}), recorded=True).recording
     assert found.near.frames.tolist() == [1, 2, 3, 4]
     assert np.unique(found.near.points, axis=0).shape == (1, 2, 3)
