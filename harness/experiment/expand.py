@@ -253,10 +253,12 @@ def _recorded(points: list[Resolved], problems: FileProblems) -> list[Resolved]:
 
     Of others each body has a place.
     """
-    found = []
+    found, looked_at = [], set()
     for point in points:
         if point["poses"].value is None:
-            _require_places(point["bodies"], problems)
+            if point["bodies"].identity not in looked_at:
+                looked_at.add(point["bodies"].identity)
+                _require_places(point["bodies"], problems)
             found.append(point)
             continue
         for leaf in TOLD_BY_POSES:
@@ -268,7 +270,7 @@ def _recorded(points: list[Resolved], problems: FileProblems) -> list[Resolved]:
 
 
 def _require_places(bodies: LeafValue, problems: FileProblems) -> None:
-    for number, body in enumerate(bodies.value or ()):
+    for number, body in enumerate(bodies.value or () if bodies.identity is not None else ()):
         if body.position is None and bodies.origin is not None:
             place = (*bodies.origin, number) if isinstance(bodies.origin, tuple) else bodies.origin
             problems.add(place, '"position" is missing')
