@@ -24,6 +24,9 @@ from harness.narrowphase.triangle_blocks import BLOCK, TriangleBlocks, block_tri
 from harness.narrowphase.triangle_distance import walk
 from harness.narrowphase.vectors import Vector, dot, minus, scaled, turned_back
 
+# How many times as wide as the other a node may be, to be left whole though it has few triangles: of a floor or a wall
+# each triangle by itself shows that most of a small body is far from it.
+WIDE = 4.0
 # Relative surplus of a limit, so that rounding leaves out nothing that is just as far.
 SURPLUS = 1e-15
 
@@ -115,11 +118,22 @@ def surface_gap(
         if room.bounds[height] >= limit * limit:
             continue
         nodes = NodePair(room.nodes[height, 0], room.nodes[height, 1])
-        if blocks.a.counts[nodes.a] <= BLOCK and blocks.b.counts[nodes.b] <= BLOCK:
+        halve_a, halve_b = to_be_halved(trees, blocks, pose, nodes)
+        if not (halve_a or halve_b):
             best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, room.parts)
         else:
             height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, room, height)
     return best
+
+
+@strict_step
+def to_be_halved(trees: Trees, blocks: Blocks, pose: Relative, nodes: NodePair) -> tuple[bool, bool]:
+    """Whether there are too many triangles below either node, or these are too wide, to put all to all of the other."""
+    count_a, count_b = blocks.a.counts[nodes.a], blocks.b.counts[nodes.b]
+    radius_a = trees.a.discs[nodes.a, 3] * pose.size_a
+    radius_b = trees.b.discs[nodes.b, 3] * pose.size_b
+    wide_a, wide_b = count_a > 1 and radius_a > WIDE * radius_b, count_b > 1 and radius_b > WIDE * radius_a
+    return count_a > BLOCK or wide_a, count_b > BLOCK or wide_b
 
 
 @strict_step
@@ -135,9 +149,9 @@ def push_halves(
 ) -> int:
     """Replace a pair of nodes by those of its halves that may come below a limit; returns the stack's new height."""
     a, b = nodes
-    many_a, many_b = blocks.a.counts[a] > BLOCK, blocks.b.counts[b] > BLOCK
+    halve_a, halve_b = to_be_halved(trees, blocks, pose, nodes)
     larger_a = trees.a.discs[a, 3] * pose.size_a >= trees.b.discs[b, 3] * pose.size_b
-    if not many_b or (many_a and larger_a):
+    if not halve_b or (halve_a and larger_a):
         left, right = NodePair(a + 1, b), NodePair(trees.a.right[a], b)
         whole = disc_b(trees.b, pose, b)
         of_left = nearness(disc_a(trees.a, pose, left.a), whole, axis, squared_limit)
