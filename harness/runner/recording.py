@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 MOST_BODIES = 500
 MOST_LINES = 50_000
 MOST_HITS = 5000
-MOST_SECONDS = 0.5
+MOST_SECONDS = 1.0
 
 
 def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
@@ -77,12 +77,12 @@ def _near_lines(answers: NearAnswers, law: MotionLaw, scene: Scene) -> NearLines
     return NearLines(frames, np.tile(found.pairs, (law.frames, 1)), np.tile(found.points, (law.frames, 1, 1)))
 
 
-def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
+def worth_recording(bodies: Mapping[str, int], runs: pd.DataFrame) -> str | None:
     """The point of an experiment that its page should replay: of those that are small enough, the fullest scene.
 
     Parameters
     ----------
-    keys : of its points, in order; of two equally full ones the first is chosen
+    bodies : how many each of its points has, in order, by key; of two equally full ones the first is chosen
     runs : its run table; the conditions of a run do not matter, its time does
 
     Returns
@@ -92,20 +92,19 @@ def worth_recording(keys: Sequence[str], runs: pd.DataFrame) -> str | None:
     Examples
     --------
     >>> import pandas as pd
-    >>> points = {"point": ["few", "many"], "count": [5, 50]}
-    >>> runs = pd.DataFrame({**points, "status": "ok", "events": 9, "run_seconds": 0.1})
-    >>> worth_recording(["few", "many"], runs)
+    >>> runs = pd.DataFrame({"point": ["few", "many"], "status": "ok", "events": 9, "run_seconds": 0.1})
+    >>> worth_recording({"few": 5, "many": 50}, runs)
     'many'
     """
-    if not {"events", "count", "run_seconds"}.issubset(runs.columns):
+    if not {"events", "run_seconds"}.issubset(runs.columns):
         return None
     small = runs[
         (runs["status"] == "ok")
-        & (runs["count"] <= MOST_BODIES)
+        & (runs["point"].map(bodies) <= MOST_BODIES)
         & (runs["events"] <= MOST_HITS)
         & (runs["run_seconds"] <= MOST_SECONDS)
     ]
     if "near_pairs" in small.columns:
         small = small[small["near_pairs"].fillna(0.0) <= MOST_LINES]
-    fullest = dict(zip(small["point"], small["count"], strict=True))
-    return max((key for key in keys if key in fullest), key=lambda key: fullest[key], default=None)
+    small_enough = set(small["point"])
+    return max((key for key in bodies if key in small_enough), key=lambda key: bodies[key], default=None)

@@ -24,7 +24,7 @@ from harness.runner.estimate import Estimate
 from harness.runner.executor import Executor, FinishedJob, LocalExecutor
 from harness.runner.key import point_key
 from harness.runner.recording import worth_recording
-from harness.runner.scene_of_point import derived_parameters
+from harness.runner.scene_of_point import body_count, derived_parameters
 from harness.runner.schedule import Job, RunSelection, Schedule, schedule
 from harness.runner.servers import Servers, files_of, on_demand_of, task_of
 from harness.runner.task import Report
@@ -240,7 +240,8 @@ def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], data
         points = {keys[id(point)]: point for point in experiment.points}
         if experiment.measure.tier == "long" or database.recorded(points):
             continue
-        key = worth_recording(list(points), runs(database.path, [experiment.name]))
+        bodies = {key: body_count(point) for key, point in points.items()}
+        key = worth_recording(bodies, runs(database.path, [experiment.name]))
         if key is not None:
             jobs.setdefault(key, Job(experiment, points[key], key, 0, recorded=True))
     return list(jobs.values())

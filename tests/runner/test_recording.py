@@ -9,7 +9,7 @@ SMALL = {"status": "ok", "count": 10, "events": 100, "run_seconds": 0.1}
 
 def chosen(*rows):
     table = pd.DataFrame([{"point": f"p{place}", **SMALL, **row} for place, row in enumerate(rows)])
-    return worth_recording([f"p{place}" for place in range(len(rows))], table)
+    return worth_recording(dict(zip(table["point"], table["count"], strict=True)), table.drop(columns="count"))
 
 
 def test_the_fullest_scene_is_chosen_and_the_first_of_equals():
@@ -28,4 +28,4 @@ def test_what_is_too_full_too_long_or_failed_is_not():
 
 
 def test_an_experiment_whose_runs_report_nothing_has_no_replay():
-    assert worth_recording(["p0"], pd.DataFrame({"point": ["p0"], "status": ["failed"], "count": [3]})) is None
+    assert worth_recording({"p0": 3}, pd.DataFrame({"point": ["p0"], "status": ["failed"]})) is None
