@@ -33,6 +33,25 @@ def test_gap_nearest_points_and_touching_are_those_of_the_exact_judge(seed, shap
     assert judged(Case(shape, forms, gap, ratio, far), np.random.default_rng(seed)).wrong == ""
 
 
+@pytest.mark.parametrize("lift", [1e-9, 1e-3, 0.4])
+def test_a_small_surface_is_as_far_from_a_wide_floor_as_its_lowest_vertex(lift):
+    floor, ball = trimesh.creation.box((10.0, 10.0, 1.0)), trimesh.creation.icosphere(3)
+    size, rng = float(np.sqrt(201.0)), np.random.default_rng(7)
+    unit = ball.vertices / 2.0  # of diameter 1
+    for quaternion in turns(rng, 5):
+        w, axis = quaternion[0], quaternion[1:]
+        turned = unit + 2.0 * np.cross(axis, np.cross(axis, unit) + w * unit)
+        place = np.array([*rng.uniform(-4.0, 4.0, 2), 0.5 + lift - 0.3 * turned[:, 2].min()])
+        for one, other in (("floor", "ball"), ("ball", "floor")):
+            bodies = {
+                "floor": harness.Body(floor, size=size),
+                "ball": harness.Body(ball, place, quaternion, size=0.3),
+            }
+            found = harness.distance(bodies[one], bodies[other])
+            assert found.gap == pytest.approx(lift, abs=1e-13)
+            assert float(np.linalg.norm(found.points[0] - found.points[1])) == pytest.approx(lift, abs=1e-13)
+
+
 @pytest.mark.parametrize("gap", [1e-12, 1e-6, 0.1, 1e8])
 @pytest.mark.parametrize("size", [1.0, 1000.0])
 def test_spheres_are_as_far_apart_as_their_centres_less_their_radii(gap, size):

@@ -9,6 +9,7 @@ from numba.core.dispatcher import Dispatcher
 from harness.runner.execute import execute
 from harness.runner.warm_up import warm_up, warm_ups
 from harness.scene.mesh_file import make_mesh
+from harness.scene.scene_files import SceneFiles
 from tests.conftest import cube_mesh
 from tests.runner.conftest import SPHERES
 
@@ -30,7 +31,7 @@ def test_after_the_warm_up_no_event_loop_is_compiled(spheres, response, record):
     point = spheres(response=response, count=12, algorithm="predictive").points[0]
     warm_up(point)
     before = compiled()
-    execute(point, None, traced=record)
+    execute(point, SceneFiles(), traced=record)
     assert compiled() == before
 
 
@@ -47,7 +48,7 @@ def test_after_the_warm_up_nothing_is_compiled(spheres, shape, response, count, 
     point = point.__class__(point.scene.model_copy(update={"shape": shape}), point.motion, point.engine)
     warm_up(point)
     before = compiled()
-    execute(point, mesh)
+    execute(point, SceneFiles((mesh,)))
     assert compiled() == before
 
 
@@ -58,7 +59,7 @@ def test_after_the_warm_up_nothing_is_compiled_for_a_reference(spheres, response
     point = spheres(measured, response=response, count=12, algorithm="grid").points[0]
     warm_up(point)
     before = compiled()
-    execute(point, None)
+    execute(point, SceneFiles())
     assert compiled() == before
 
 
