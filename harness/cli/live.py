@@ -14,7 +14,7 @@ from harness.backends import registry
 from harness.cli.interruption import heed
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
-from harness.experiment.leaves import LEAVES
+from harness.experiment.leaves import LEAVES, plain
 from harness.experiment.load import load_text
 from harness.replay.document import document
 from harness.replay.live import LiveServer
@@ -65,14 +65,16 @@ def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
     point = experiment.points[0]
     leaves = point.parameters
     files = files_of(experiment, point, meshes)
-    ratio = leaves["box_ratio"] or mean_size(point, files) ** 2 / derived_parameters(point, files)["box_side"] ** 2
     shapes = ("sphere",) if not point.scene.mesh_names else ("sphere", "hull", "mesh")
     found = [
         Setting("algorithm", "algorithm", leaves["algorithm"], tuple(ALGORITHMS)),
         Setting("backend", "backend", leaves["backend"], tuple(registry.names())),
         Setting("shape", "shape", leaves["shape"], shapes),
-        Setting("box_ratio", "box ratio (size / side)²", f"{ratio:.4g}"),
     ]
+    if point.motion.poses is not None:
+        return found
+    ratio = leaves["box_ratio"] or mean_size(point, files) ** 2 / derived_parameters(point, files)["box_side"] ** 2
+    found.append(Setting("box_ratio", "box ratio (size / side)²", f"{ratio:.4g}"))
     if point.scene.bodies is None:  # bodies that are given one by one have their number and speeds
         found.insert(3, Setting("count", "number of bodies", str(leaves["count"]), inputmode="numeric"))
         found.append(Setting("speed", "speed, m/s", json.dumps(leaves["speed"]).replace('"', ""), inputmode="text"))
@@ -109,7 +111,7 @@ def _first_point_alone(experiment: Experiment) -> str:
     """The text of an experiment whose one point is the first of this one."""
     file: dict[str, Any] = {"title": experiment.title, "scene": {}, "motion": {}, "engine": {}}
     for name, value in experiment.points[0].parameters.items():
-        if value is not None:
+        if value != plain(LEAVES[name].default):
             file[LEAVES[name].section][name] = value
     limits = experiment.measure
     file["measure"] = {"repeats": 1, "timeout": limits.timeout, "memory": limits.memory}
