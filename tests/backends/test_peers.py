@@ -137,7 +137,7 @@ def test_of_several_backends_those_not_installed_are_passed_over_with_the_hint(l
         "zip: [{backend: [fcl, odd], algorithm: [grid, native]}]\nmeasure: {repeats: 3}\n"
     )
     assert main(["sweep", str(path), "--dry-run"]) == 0
-    said = capsys.readouterr().out
+    said = " ".join(capsys.readouterr().out.split())
     assert "points passed over: backend \"odd\" cannot be used: not installed; pip install 'odd-engine[fast]'" in said
     assert "3 runs to do" in said
     assert main(["compare", str(path), "--backends", "fcl,odd"]) == 2

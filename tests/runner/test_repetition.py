@@ -6,7 +6,7 @@ from harness.measure.metrics import METRICS
 from harness.motion.hits import Outcome
 from harness.motion.law import MotionLaw
 from harness.runner.execute import execute
-from harness.runner.point import law_of, method_of_point
+from harness.runner.point import method_of_point
 from harness.runner.repetition import COLD_UNTIL, LONG_ENOUGH, fly_long_enough, warm
 from harness.scene.scene_files import SceneFiles
 
@@ -91,7 +91,7 @@ def test_every_method_is_warmed_the_same_way_on_what_is_not_timed(spheres, monke
 
     monkeypatch.setattr("harness.runner.execute.method_of_point", lambda _: Loading())
     execute(point, SceneFiles())
-    whole = law_of(point).duration
+    whole = point.motion.duration
     assert flown[0] == (1, max(whole / 64, point.motion.dt))
     assert (2, whole) in flown
     assert all(duration == whole for number, duration in flown if number == 2)
