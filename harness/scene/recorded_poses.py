@@ -6,11 +6,9 @@ import hashlib
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from harness.arrays import Floats
 from harness.scene.bodies import Bodies
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
