@@ -36,7 +36,7 @@ class Budget:
 
     @contextmanager
     def share(self, parts: int) -> Iterator[None]:
-        """Inside, no more than one of so many equal parts of what is left, so that one question leaves some to others."""
+        """No more than one of so many equal parts of what is left, so that one question leaves some to others."""
         if self._end is None:
             yield
             return
