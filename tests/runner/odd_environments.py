@@ -108,7 +108,7 @@ ENVIRONMENTS = {
             "PYTHONWARNINGS": "error",
             "COLUMNS": "40",
         }
-    ),  # fmt: skip
+    ),
     "files of 0 bytes": Environment(limits={resource.RLIMIT_FSIZE: 0}, may_fail=True),
     "files of 8 KiB": Environment(limits={resource.RLIMIT_FSIZE: 8 << 10}, may_fail=True),
     "files of 60 KiB": Environment(limits={resource.RLIMIT_FSIZE: 60 << 10}, may_fail=True),
