@@ -17,6 +17,7 @@ import numpy as np
 
 from harness.kernel import kernel
 from harness.narrowphase.advancement import time_of_impact
+from harness.narrowphase.clearance_field import ClearanceField, clearance_field, no_field
 from harness.narrowphase.free_flight import Motion, place, seen_at
 from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart
 from harness.narrowphase.motion_bounds import (
@@ -54,11 +55,13 @@ class MeshShape(NamedTuple):
     hull : SupportMap of its convex hull
     tree : TriangleTree
     radius : of a sphere around the centre that holds it
+    field : ClearanceField of the surface, of no nodes where contacts are not followed; it only saves time
     """
 
     hull: SupportMap
     tree: TriangleTree
     radius: float
+    field: ClearanceField
 
 
 class MeshWarmStart(NamedTuple):
@@ -119,10 +122,11 @@ class TriangleImpact(NamedTuple):
     steps: int
 
 
-def mesh_shape(mesh: Mesh) -> MeshShape:
-    """The surface and the hull of a mesh, made ready for searches."""
+def mesh_shape(mesh: Mesh, *, followed: bool = False) -> MeshShape:
+    """The surface and the hull of a mesh, made ready for searches, and for following contacts fast where asked for."""
     radius = float(np.sqrt(np.square(mesh.vertices).sum(axis=1).max()))
-    return MeshShape(support_map(mesh.hull.vertices), triangle_tree(mesh.vertices, mesh.faces), radius)
+    field = clearance_field(mesh) if followed else no_field()
+    return MeshShape(support_map(mesh.hull.vertices), triangle_tree(mesh.vertices, mesh.faces), radius, field)
 
 
 @kernel

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from harness.narrowphase.advancement import time_of_impact
+from harness.narrowphase.clearance_field import no_field
 from harness.narrowphase.free_flight import attitude, place
 from harness.narrowphase.gjk import COLD_START
 from harness.narrowphase.mesh_advancement import MESH_COLD_START, MeshShape, time_of_mesh_impact
@@ -66,7 +67,9 @@ def test_icospheres_converge_to_the_sphere_with_the_square_of_their_edges():
     for level in (1, 2, 3, 4):
         sphere = trimesh.creation.icosphere(subdivisions=level, radius=0.5)
         vertices = np.array(sphere.vertices)
-        shape = MeshShape(support_map(vertices), triangle_tree(vertices, np.array(sphere.faces, np.int32)), 0.5)
+        shape = MeshShape(
+            support_map(vertices), triangle_tree(vertices, np.array(sphere.faces, np.int32)), 0.5, no_field()
+        )
         found = []
         for q, p in zip(turns(np.random.default_rng(0), 20), turns(np.random.default_rng(1), 20), strict=True):
             a, b_ = body(quaternion=q, spin=(0.5, 1, 2)), body(offset, velocity, quaternion=p, spin=(1, -2, 0))
