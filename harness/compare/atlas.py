@@ -131,7 +131,7 @@ def survey(
     for family in families:
         what = f"{made.query}, {family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:
-            budget.left_out.append(f"{what}: not asked, {budget.seconds:g} s were spent")
+            budget.left_out.append(f"{what}: not asked, {budget.why}")
             continue
         progress(f"{what}: {count} poses")
         made(atlas, family, shape, mesh, names, budget, timeout).ask(count)
@@ -176,7 +176,7 @@ class Survey:
                     if self.budget.spent:
                         self.budget.left_out.append(
                             f"{self.family}, {self.shape}: {len(whole) - place} of {len(whole)} poses not asked, "
-                            f"{self.budget.seconds:g} s were spent"
+                            f"{self.budget.why}"
                         )
                         break
                     self.ask_at(place, asked, held, poses)

@@ -65,7 +65,7 @@ def compare_all(
         scene = pose_set.scene
         what = f"{_asked(pose_set)}{len(scene.bodies)} bodies, shape {scene.shape}"
         if budget.spent:
-            budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.seconds:g} s were spent")
+            budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.why}")
             continue
         with budget.paused():
             for name in names:
@@ -175,7 +175,7 @@ class _Questions:
             self._budget.left_out.append(
                 f"{self._asked_before}{len(scene.bodies)} bodies, shape {scene.shape}{_sizes(scene)}: "
                 f"{len(self._poses) - place} of "
-                f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.seconds:g} s were spent"
+                f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.why}"
             )
         if self._again:
             self._ask_again()
