@@ -146,7 +146,7 @@ def _forced(experiment: Experiment, meshes: Opened) -> Iterator[Problem]:
     forcing = [point for point in experiment.points if point.engine.stages]
     if not forcing:
         return
-    from harness.runner.execute import plan_of  # half a second, which most experiments need not spend
+    from harness.runner.point import plan_of  # half a second, which most experiments need not spend
     from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import files_of
     from harness.scene.launch import PlacementError
