@@ -46,6 +46,7 @@ FAMILIES = {
     "sizes": "first contact of bodies whose sizes differ 10 to 10^4 times",
     "far": "first contact at coordinates of 10^3 and 10^6 sizes",
     "units": "random poses and first contacts of bodies of 1e-4 m and 1e4 m",
+    "resting": "bodies that rest on each other, as the experiment's recorded poses (`motion.poses`) have them",
 }
 """Families of poses of two bodies, in which backends go wrong in different ways."""
 
