@@ -180,7 +180,10 @@ def time_of_mesh_impact(
         after = MeshWarmStart(hulls.warm_start, start.leaves)
         return MeshImpact(SearchVerdict.NEVER, never, 0.0, hulls.axis, after, hulls.steps)
     trees = Trees(shape_a.tree, shape_b.tree)
-    found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, hulls.axis)
+    if hulls.gap > 0.0:
+        found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, hulls.axis)
+    else:
+        found = FirstTouch(SearchVerdict.STALLED, hulls.time, 0.0, hulls.axis, NO_NODES, 0)
     if found.verdict == SearchVerdict.STALLED:
         steps = found.steps
         found = first_touch(trees, a, b, found.time, rest, tolerance, start.leaves)
@@ -206,8 +209,6 @@ def touch_in_slabs(
     near = max(tolerance, LEAST_GAP * (a.size + b.size))
     flight = flight_of(a, b, near / 4.0)
     now, steps = begin, 0
-    if axis == (0.0, 0.0, 0.0):
-        return FirstTouch(SearchVerdict.STALLED, now, 0.0, axis, NO_NODES, steps)
     cap_a, cap_b, pairs = empty_cap(), empty_cap(), empty_pairs()
     for _ in range(MOST_WINDOWS):
         at = instant_of(flight, now)

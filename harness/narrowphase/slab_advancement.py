@@ -121,6 +121,8 @@ def slab_of(
         most = min(most, sqrt(travel / (bend_a + bend_b)))
     down = scaled(axis, -1.0)
     count_a = count_b = -1
+    if most == np.inf:  # they neither spin nor drift along the axis
+        return Slab(most, count_a, count_b)
     for _ in range(HALVINGS):
         offset, slack = dot(axis, at.offset), 0.5 * most * most
         rise_a = rise_of(at.turn_a, a.size, axis, plus(axis, scaled(across_a, most)), 0.0, 0.0, slack * bend_a)
