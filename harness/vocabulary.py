@@ -68,6 +68,7 @@ class AlgorithmWord:
     own : whether the pairs are found by this program; else by the backend's own broad phase
     kernels : whether kernels of this program decide on the pairs that touch, and the backend only where these cannot
     queries : what it can be asked
+    shared : whether several threads can share out the pairs of a frame, as `engine.threads` asks
     """
 
     meaning: str
@@ -75,11 +76,12 @@ class AlgorithmWord:
     own: bool = True
     kernels: bool = False
     queries: tuple[Query, ...] = tuple(QUERIES)
+    shared: bool = False
 
 
 ALGORITHMS: dict[str, AlgorithmWord] = {
     "brute-force": AlgorithmWord("every pair, every frame"),
-    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies", kernels=True),
+    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies", kernels=True, shared=True),
     "sap": AlgorithmWord(
         "pairs from bodies sorted along an axis, each compared with those its interval overlaps", kernels=True
     ),

@@ -10,7 +10,7 @@ from harness.compare.audit import audit_of
 from harness.compare.budget import Budget
 from harness.compare.group import Group, load
 from harness.compare.isolated import ANSWER_SECONDS, preload
-from harness.compare.outcome import Case, Comparison, Failure
+from harness.compare.outcome import LOADING, Case, Comparison, Failure
 from harness.compare.poses import Pose, PoseSet
 from harness.compare.query_answers import Told, make_ready
 from harness.compare.question import COLLISION, Question
@@ -133,9 +133,12 @@ def _compare_at(
                 asked = "" if question.query == "collision" else f" asked {question.query}"
                 line = f"{pair[0]} and {pair[1]} are not comparable on shape {shape}{asked}"
                 found.unsupported.append(f"{line}: {name}: {loaded.unusable[name]}")
+        for name in sorted(loaded.broken):
+            pair = next(pair for pair in whole if name in pair)
+            whole[pair].failures.append(Failure(pair, name, LOADING, 0, loaded.unusable[name]))
         for name, claim in loaded.claims.items():
             pair = next(pair for pair in whole if name in pair)
-            whole[pair].failures.append(Failure(pair, name, "loading", 0, claim, kind="claim"))
+            whole[pair].failures.append(Failure(pair, name, LOADING, 0, claim, kind="claim"))
         for group in loaded.groups:
             for pair, found in _Questions(pose_set, group, budget, again=True).ask().items():
                 whole[pair].add(found)

@@ -18,8 +18,13 @@ def name_of(point: Point) -> MethodName:
 
 def method_of_point(point: Point) -> Method:
     """The method of a point, set as its engine says."""
+    engine = point.engine
     return method_of(
-        name_of(point), tolerance=point.engine.tolerance, within=point.engine.within, forced=point.engine.stages
+        name_of(point),
+        tolerance=engine.tolerance,
+        within=engine.within,
+        forced=engine.stages,
+        threads=engine.threads,
     )
 
 
