@@ -142,7 +142,15 @@ def _compare_at(
         for group in loaded.groups:
             for pair, found in _Questions(pose_set, group, budget, again=True).ask().items():
                 whole[pair].add(found)
-    return whole, loaded.hanging
+        answering = [asked for group in loaded.groups for asked in group.asked.values()]
+        silent = {asked.name for asked in answering if asked.timeouts >= MOST_FAILURES}
+        for name in sorted(silent):
+            pair = next(pair for pair in whole if name in pair)
+            whole[pair].unsupported.append(
+                f"{name} did not answer within {timeout:g} s at {MOST_FAILURES} poses of a scene, and is not asked "
+                "about other scenes"
+            )
+    return whole, loaded.hanging.union(silent)
 
 
 class _Questions:

@@ -127,6 +127,7 @@ class Isolated:
     ----------
     name, question : as given
     facts : what it declares of itself, once entered
+    timeouts : how often it has not answered in time
 
     Raises
     ------
@@ -139,6 +140,7 @@ class Isolated:
     ) -> None:
         self.name, self.question = name, question
         self._scene, self._timeout = scene, timeout
+        self.timeouts = 0
         self._child: Child | None = None
 
     def __enter__(self) -> Isolated:
@@ -182,6 +184,7 @@ class Isolated:
         if isinstance(answer, bytes):
             return pickle.loads(answer)
         ending, self._child = self._child.end(), None
+        self.timeouts += answer == "timeout"
         return f"no answer within {self._timeout:g} s" if answer == "timeout" else ending.instead_of("an answer")
 
     def seconds_a_query(self, poses: Sequence[Pose], near: NearQuestion | None = None) -> float | None:

@@ -56,9 +56,12 @@ def test_one_that_takes_near_poses_for_the_same_is_caught_at_the_small_steps(lia
 
 
 def test_one_that_does_not_answer_is_given_up_and_named(liar):
-    found = compare([crowd()], ["fcl", liar("sleeps")], timeout=0.3)
+    said = []
+    found = compare([crowd()] * 3, ["fcl", liar("sleeps")], said.append, timeout=0.3)
     assert named(found) == {"sleeps"}
     assert "from frame 4 on it is not asked" in found.unsupported[0]
+    assert "at 5 poses of a scene, and is not asked about other scenes" in found.unsupported[1]
+    assert (len(found.failures), len(said)) == (5, 1)
 
 
 @pytest.mark.parametrize("name", BY_CONTRACT)
