@@ -39,7 +39,7 @@ from harness.narrowphase.support import SupportMap, support_map
 from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees, halves, push_near
 from harness.narrowphase.triangle_distance import triangle_distance
 from harness.narrowphase.triangle_tree import TriangleTree, triangle_tree
-from harness.narrowphase.vectors import Triangle, Vector, minus, plus
+from harness.narrowphase.vectors import Triangle, Vector, cross, dot, minus, plus, scaled, unit
 from harness.narrowphase.verdicts import SearchVerdict
 from harness.scene.mesh import Mesh
 
@@ -221,9 +221,8 @@ def touch_in_slabs(
             if now + pairs.waits[k] >= first.time:
                 continue
             leaves = NodePair(pairs.leaves[k, 0], pairs.leaves[k, 1])
-            one, other = triangles_of(trees, leaves, at)
-            if until_triangles_touch(one, other, first.axis, at, first.time - now) == np.inf:
-                continue  # along the axis of the first contact so far, most of those around it are apart
+            if certainly_apart(trees, leaves, at, first.axis, first.time - now):
+                continue
             found = impact_of_triangles(trees, leaves, flight, now, first.time, near)
             steps += found.steps
             if found.verdict == SearchVerdict.STALLED:
@@ -283,6 +282,26 @@ def first_touch(
             if 0.0 < parts.first_wait < np.inf:
                 waiting = enqueue(queue, waiting, now + parts.first_wait, parts.first)
     return FirstTouch(verdict, until, gap, axis, leaves, steps)
+
+
+@kernel
+def certainly_apart(trees: Trees, leaves: NodePair, at: Instant, axis: Vector, horizon: float) -> bool:
+    """Whether triangles stay apart up to a horizon (s) along an axis, or along the normal of either.
+
+    That takes a third of the time of measuring their distance. The axis is best that of a contact nearby, along which
+    most of what is around it is apart.
+    """
+    one, other = triangles_of(trees, leaves, at)
+    if until_triangles_touch(one, other, axis, at, horizon) == np.inf:
+        return True
+    for side in range(2):
+        face = one if side == 0 else other
+        normal = unit(cross(minus(face[1], face[0]), minus(face[2], face[0])))
+        if dot(normal, minus(one[0], other[0])) < 0.0:
+            normal = scaled(normal, -1.0)
+        if until_triangles_touch(one, other, normal, at, horizon) == np.inf:
+            return True
+    return False
 
 
 @strict_step
