@@ -85,10 +85,13 @@ def scene_text(parameters: Mapping[str, Any]) -> str:
     '40 bodies of pumpkin-1753 (hull) at packing 0.0971'
     >>> scene_text({"count": 40, "mesh": {"choice": ["a.ply", "b.ply"]}, "shape": "mesh"}).replace("\u00a0", " ")
     '40 bodies of 2 meshes (mesh)'
+    >>> scene_text({"bodies": [{"mesh": "a.ply"}, {"mesh": "b.ply"}], "shape": "mesh"}).replace("\u00a0", " ")
+    '2 bodies of 2 meshes (mesh)'
     >>> scene_text({"count": 9, "shape": "sphere", "query": "distance", "within": 0.05}).replace("\u00a0", " ")
     '9 spheres, query distance within 0.05 m'
     """
-    count = parameters.get("count")
+    count, listed = parameters.get("count"), parameters.get("bodies")
+    count = len(listed) if count is None and isinstance(listed, list | tuple) else count
     bodies = plural(int(count), "body", "bodies") if isinstance(count, int | float) else "bodies"
     shape = parameters.get("shape")
     if shape == "sphere":

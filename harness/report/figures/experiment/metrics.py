@@ -32,7 +32,10 @@ def _figures(page: ExperimentPage) -> list[Figure]:
 
 def _figure(arrangement: Arrangement, metrics: tuple[str, ...]) -> Figure:
     unit = scale([point.median(metric) for point in arrangement.points for metric in metrics], metric_unit(metrics[0]))
-    names = arrangement.panels[:_MOST_PANELS]
+    filled = [
+        name for name in arrangement.panels if any(_reported(s, metrics) for s in arrangement.series if s.panel == name)
+    ]
+    names = filled[:_MOST_PANELS]
     by_metric = len(metrics) > 1
     panels = []
     for name in names:
@@ -51,7 +54,7 @@ def _figure(arrangement: Arrangement, metrics: tuple[str, ...]) -> Figure:
     over = leaf_title(arrangement.x)
     kind = "Log-log plot" if logarithmic else "Plot"
     keys = {line.label: Key(line.label, line.style) for panel in panels for line in panel.lines}
-    left = len(arrangement.panels) - len(names)
+    left = len(filled) - len(names)
     return Figure(
         "-".join(metrics),
         f"{title} against {over}",
@@ -91,7 +94,12 @@ def _place(arrangement: Arrangement, value: object) -> str:
 
 
 def _measured(arrangement: Arrangement, metric: str) -> bool:
-    return any(point.summary(metric) for point in arrangement.points)
+    return any(_reported(series, (metric,)) for series in arrangement.series)
+
+
+def _reported(series: Series, metrics: Sequence[str]) -> bool:
+    """Whether a point of it has one of the metrics: what is asked of some points has nothing to draw for others."""
+    return any(point.summary(metric) for point in series.points for metric in metrics)
 
 
 def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool) -> str:
