@@ -21,8 +21,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function over arrays, keeping its type for the checker."""
-    return cast(Function, _Waiting(function, lambda: _kept(function, error_model="numpy", no_cfunc_wrapper=True)))
+    """Compile a function over arrays, keeping its type for the checker. Other threads run while it does."""
+    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "nogil": True}
+    return cast(Function, _Waiting(function, lambda: _kept(function, **options)))
 
 
 def inner(function: Function) -> Function:

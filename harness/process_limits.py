@@ -120,3 +120,16 @@ def _address_space() -> int:
 
 def _prctl(option: int, value: object) -> None:
     ctypes.CDLL(None).prctl(option, value)
+
+
+# What the system says of a library that it has no memory for.
+_OUT_OF_MEMORY = ("failed to map segment", "annot allocate memory")
+
+
+def out_of_memory(error: BaseException | None) -> bool:
+    """Whether an error, or one that it was raised from, says that there is no memory."""
+    while error is not None and not isinstance(error, MemoryError):
+        if any(words in str(error) for words in _OUT_OF_MEMORY):
+            return True
+        error = error.__cause__ or error.__context__
+    return error is not None

@@ -46,6 +46,7 @@ FAMILIES = {
     "sizes": "first contact of bodies whose sizes differ 10 to 10^4 times",
     "far": "first contact at coordinates of 10^3 and 10^6 sizes",
     "units": "random poses and first contacts of bodies of 1e-4 m and 1e4 m",
+    "resting": "bodies that rest on each other, as the experiment's recorded poses (`motion.poses`) have them",
 }
 """Families of poses of two bodies, in which backends go wrong in different ways."""
 
@@ -67,6 +68,7 @@ class AlgorithmWord:
     own : whether the pairs are found by this program; else by the backend's own broad phase
     kernels : whether kernels of this program decide on the pairs that touch, and the backend only where these cannot
     queries : what it can be asked
+    shared : whether several threads can share out the pairs of a frame, as `engine.threads` asks
     """
 
     meaning: str
@@ -74,11 +76,12 @@ class AlgorithmWord:
     own: bool = True
     kernels: bool = False
     queries: tuple[Query, ...] = tuple(QUERIES)
+    shared: bool = False
 
 
 ALGORITHMS: dict[str, AlgorithmWord] = {
     "brute-force": AlgorithmWord("every pair, every frame"),
-    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies", kernels=True),
+    "grid": AlgorithmWord("pairs from uniform or hierarchical cells sized to the bodies", kernels=True, shared=True),
     "sap": AlgorithmWord(
         "pairs from bodies sorted along an axis, each compared with those its interval overlaps", kernels=True
     ),

@@ -8,20 +8,33 @@ import sys
 import textwrap
 from pathlib import Path
 
+from numba.core.caching import _CacheLocator
+
 PACKAGE = Path(__file__).parents[1] / "harness"
 
 
 class ProgramCopy:
     """The package in a folder of its own.
 
-    `touched` are the files that were added or changed since. Kernels of records cannot do without the compiler, which
-    takes half a minute; others run `compiled=False`.
+    `touched` are the files that were added or changed since. Kernels of records cannot do without the compiler, so that
+    what is compiled is copied as well; where little is computed, `compiled=False` waits for no compiler.
     """
 
     def __init__(self, folder, compiled=True):
         self.folder, self.touched = folder, []
         self.environment = os.environ | {"PYTHONPATH": str(folder)} | ({} if compiled else {"NUMBA_DISABLE_JIT": "1"})
         shutil.copytree(PACKAGE, folder / "harness", ignore=shutil.ignore_patterns("__pycache__"))
+        if compiled:
+            self._copy_kernels()
+
+    def _copy_kernels(self):
+        """numba keeps the kernels of a folder under a name that is made of the folder's path."""
+        folders = [PACKAGE, *(path for path in PACKAGE.rglob("*") if path.is_dir())]
+        kept = {_name_in_cache(path): path.relative_to(PACKAGE) for path in folders}
+        for kernels in (PACKAGE / "__pycache__").glob("kernels-*/*"):
+            if kernels.name in kept:
+                name = _name_in_cache(self.folder / "harness" / kept[kernels.name])
+                shutil.copytree(kernels, self.folder / "harness/__pycache__" / kernels.parent.name / name)
 
     def add(self, path, text):
         """A file that there was not."""
@@ -52,3 +65,7 @@ class ProgramCopy:
         runs = json.loads(self.run("export", "--db", "results.db", "--format", "json"))["runs"]
         assert {run["status"] for run in runs} == {"ok"}
         return {run["experiment"]: run for run in runs}
+
+
+def _name_in_cache(folder):
+    return _CacheLocator.get_suitable_cache_subpath(str(folder / "any.py"))

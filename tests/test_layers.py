@@ -21,6 +21,7 @@ BASE = {
     "modules",
     "process_limits",
     "python_child",
+    "threads",
     "vocabulary",
     "whole_file",
 }

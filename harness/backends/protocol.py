@@ -11,12 +11,14 @@ One that says `queries` answers more than whether bodies touch: with "distance" 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
-from harness.arrays import Floats, Pairs
-from harness.scene.hull import Hull
-from harness.scene.scene import Scene, Solid, by_solid
 from harness.vocabulary import Query, Shape
+
+if TYPE_CHECKING:  # of numpy, which a list of the backends can do without
+    from harness.arrays import Floats, Pairs
+    from harness.scene.hull import Hull
+    from harness.scene.scene import Scene, Solid
 
 
 class NearPairs(NamedTuple):
@@ -174,6 +176,8 @@ def own_hulls(backend: Backend) -> Mapping[Solid, Hull]:
 
     A comparison gives them to the other backend too, so that both are asked about the same solids.
     """
+    from harness.scene.scene import by_solid
+
     return by_solid(getattr(backend, "own_hulls", {}))
 
 

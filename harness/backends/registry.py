@@ -193,10 +193,16 @@ def _constants(file: Path) -> Iterator[tuple[str, str]]:
 
 def _required(package: str, *extras: str) -> frozenset[str]:
     """The packages that a package needs, always or for one of these extras."""
+    wanted = [None, *extras]
+    return frozenset(name for name, extra in _requirements(package) if extra in wanted)
+
+
+@lru_cache(maxsize=64)
+def _requirements(package: str) -> tuple[tuple[str, str | None], ...]:
+    """What a package says that it needs, each with the extra that it is needed for; nothing of one that is missing."""
     try:
         lines = requires(package) or ()
     except PackageNotFoundError:
-        return frozenset()
-    wanted = [None, *extras]
+        return ()
     parts = [(re.match(r"[\w.-]+", line), re.search(r"extra\s*==\s*['\"]([^'\"]+)", line)) for line in lines]
-    return frozenset(name[0] for name, extra in parts if name and (extra[1] if extra else None) in wanted)
+    return tuple((name[0], extra[1] if extra else None) for name, extra in parts if name)

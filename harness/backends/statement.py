@@ -16,14 +16,17 @@ import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache, partial
+from typing import TYPE_CHECKING
 
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, queries, units
-from harness.child_process import Channel, Child, guarded
 from harness.kept_files import keep, kept
 from harness.kernel_cache import PACKAGE
 from harness.process_limits import isolate, limit_memory_of_stranger
 from harness.vocabulary import Shape
+
+if TYPE_CHECKING:
+    from harness.child_process import Channel
 
 # s for the import and the answer of a stranger, of which a person waits for none with the first and for all that
 # their plan depends on with the second.
@@ -156,6 +159,8 @@ def _say(name: str) -> Statement:
 
 
 def _say_elsewhere(name: str, seconds: float) -> Statement:
+    from harness.child_process import Child  # where there is no stranger, there is no child
+
     with Child.spawn("harness.backends.statement", [name], os.environ) as child:
         answer = child.receive(seconds)
         if answer == "timeout":
@@ -189,5 +194,7 @@ def _one_line(text: str) -> str:
 
 
 if __name__ == "__main__":
+    from harness.child_process import Channel, guarded
+
     isolate()
     guarded(partial(_say_within_limits, sys.argv[2]))(Channel(int(sys.argv[1])))

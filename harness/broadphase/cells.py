@@ -43,35 +43,62 @@ def close_pairs(positions: Floats, half: Floats, bodies: Arrays, keys: Keys) -> 
         time, which is a fifth of a frame of 30 bodies
     keys : (room,) written: i << 32 | j of each close pair, in no order, as far as there is room
     """
+    sort_into_cells(positions, half, bodies)
+    return close_pairs_of_part(bodies, keys, 0, 1)
+
+
+@kernel
+def sort_into_cells(positions: Floats, half: Floats, bodies: Arrays) -> None:
+    """Fit the lattices and sort the bodies; arguments are as for `close_pairs`."""
+    cells = Cells(*bodies)
+    fit_lattices(positions, half, cells.levels)
+    sort_by_cell(positions, cells)
+
+
+@kernel
+def close_pairs_of_part(bodies: Arrays, keys: Keys, part: int, parts: int) -> tuple[int, int]:
+    """Test the neighbours of one of so many equal parts of the bodies of every level, as they are sorted.
+
+    `bodies`, `keys` and the answer are as for `close_pairs`, which has one part.
+    """
     cells = Cells(*bodies)
     levels = cells.levels
-    fit_lattices(positions, half, levels)
-    sort_by_cell(positions, cells)
     close, tests = 0, 0
     for fine in range(len(levels)):
-        close, tests = pairs_within(levels[fine], cells, keys, close, tests)
+        level = levels[fine]
+        begin, end = part_of(level, part, parts)
+        close, tests = pairs_within(level, begin, end, cells, keys, close, tests)
         for coarse in range(fine):
             seekers, others = levels[fine], levels[coarse]
             if expected_work(others, seekers) < expected_work(seekers, others):
                 seekers, others = others, seekers
-            close, tests = pairs_between(seekers, others, cells, keys, close, tests)
+            begin, end = part_of(seekers, part, parts)
+            close, tests = pairs_between(seekers, others, begin, end, cells, keys, close, tests)
     return close, tests
 
 
 @kernel
-def pairs_within(level: Level, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
+def part_of(level: Level, part: int, parts: int) -> tuple[int, int]:
+    """The slots where a part of the bodies of a level begins and ends."""
+    count = level.end - level.begin
+    return level.begin + count * part // parts, level.begin + count * (part + 1) // parts
+
+
+@kernel
+def pairs_within(level: Level, first: int, last: int, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
     """Each body with those after it in its own cell, and with the later half of the neighbouring cells.
 
     The first bodies of all runs are compared before any pair is noted, as whether one is near cannot be foreseen, and a
     branch for each run would be mispredicted. Cells are unsigned as indices, or numba would ask of each whether it
     counts from the end, which takes a quarter of the time.
 
-    Parameters and answer: `close` pairs and `tests` so far, and with those of this level.
+    Parameters and answer: the slots from `first` until `last`; `close` pairs and `tests` so far, and with those of
+    this level.
     """
     start, slots, columns = cells.start, cells.slots, cells.columns
     row, plane = level.row, level.plane
     begins, ends = np.empty(RUNS, np.int64), np.empty(RUNS, np.int64)
-    for slot in range(level.begin, level.end):
+    for slot in range(first, last):
         cell = slots[slot, 0]
         x, y, z = columns[0, slot], columns[1, slot], columns[2, slot]
         square = NEARLY * (columns[3, slot] + level.reach) ** 2
@@ -99,14 +126,17 @@ def pairs_within(level: Level, cells: Cells, keys: Keys, close: int, tests: int)
 
 
 @kernel
-def pairs_between(seekers: Level, others: Level, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
+def pairs_between(
+    seekers: Level, others: Level, begin: int, end: int, cells: Cells, keys: Keys, close: int, tests: int
+) -> Found:
     """Each body of one level with the bodies of the other in all cells where their centres can be.
 
     Either level may seek. Many small bodies each look into a few cells of the coarse lattice, but a few large ones do
-    less work if they go through the fine cells that they cover. `close` and `tests` are as for `pairs_within`.
+    less work if they go through the fine cells that they cover. The seekers are those in the slots from `begin` until
+    `end`; `close` and `tests` are as for `pairs_within`.
     """
     start, columns = cells.start, cells.columns
-    for slot in range(seekers.begin, seekers.end):
+    for slot in range(begin, end):
         x, y, z = columns[0, slot], columns[1, slot], columns[2, slot]
         reach = (columns[3, slot] + others.reach) * (1.0 + SLACK)
         square = NEARLY * reach * reach
@@ -114,16 +144,16 @@ def pairs_between(seekers: Level, others: Level, cells: Cells, keys: Keys, close
         first, last = others.first + block.x0 * others.plane, others.first + block.x1 * others.plane
         for plane in range(first, last + 1, others.plane):
             for row in range(plane + block.y0 * others.row, plane + block.y1 * others.row + 1, others.row):
-                begin, end = start[np.uintp(row + block.z0)], start[np.uintp(row + block.z1 + 1)]
-                bodies = end - begin
+                low, high = start[np.uintp(row + block.z0)], start[np.uintp(row + block.z1 + 1)]
+                bodies = high - low
                 tests += bodies
-                near = lanes_within(columns, begin, x, y, z, square) & ((1 << min(bodies, LANES)) - 1)
+                near = lanes_within(columns, low, x, y, z, square) & ((1 << min(bodies, LANES)) - 1)
                 while near != 0:
-                    other = begin + lowest_bit(near)
+                    other = low + lowest_bit(near)
                     near &= near - 1
                     close = compare(slot, other, other + 1, square, cells, keys, close)
                 if bodies > LANES:
-                    close = compare(slot, begin + LANES, end, square, cells, keys, close)
+                    close = compare(slot, low + LANES, high, square, cells, keys, close)
     return Found(close, tests)
 
 

@@ -6,13 +6,14 @@ first makes no difference to it.
 """
 
 from math import sqrt
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from harness.arrays import Floats, Pairs
 from harness.kernel import kernel
+from harness.threads import Threads
 
 Keys = NDArray[np.int64]  # (k,) i << 32 | j of pairs
 
@@ -54,6 +55,17 @@ class BroadPhase(Protocol):
             If the shape is wrong, or a coordinate is not a finite number within 1e150 m.
         """
         ...
+
+
+@runtime_checkable
+class Shareable(Protocol):
+    """A broad phase whose bodies several threads can share out."""
+
+    def share_with(self, threads: Threads) -> None:
+        """Share them out from now on; pairs, their order and what is counted stay the same."""
+
+    def compile_shared(self) -> None:
+        """Compile what that needs, outside of every clock."""
 
 
 @kernel

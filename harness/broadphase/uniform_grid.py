@@ -14,9 +14,13 @@ from harness.broadphase.lanes import LANES
 from harness.broadphase.levels import LEVEL, Levels
 from harness.broadphase.pairs import checked_positions, checked_radii, unpack
 from harness.scene.box import Box
+from harness.threads import Threads
 
 CELLS_PER_BODY = 8
 """Cells that all levels together may have for each body; in a dilute scene cells grow until they keep to it."""
+
+FEWEST_SHARED = 4096
+"""Bodies that are worth handing over to another thread."""
 
 
 class UniformGrid:
@@ -49,6 +53,15 @@ class UniformGrid:
         )
         self._cells = Cells(*self._arrays)
         self._keys = np.empty(count + 1, np.int64)
+        self._threads, self._of_parts = Threads(), [np.empty(0, np.int64)]
+
+    def share_with(self, threads: Threads) -> None:
+        """Share out the bodies of a frame among threads from now on; pairs, their order and counts stay the same."""
+        self._threads = threads
+
+    def compile_shared(self) -> None:
+        """Compile what threads call."""
+        self._shared(np.zeros((len(self.radii), 3)), 1)
 
     def size_classes(self) -> NDArray[np.int64]:
         """(n,) int array: the size class of each body, 0 the largest. Here all bodies are in one."""
@@ -57,12 +70,34 @@ class UniformGrid:
     def close_pairs(self, positions: ArrayLike) -> Pairs:
         """Pairs of bodies whose bounding spheres touch, as `BroadPhase.close_pairs` defines them."""
         positions = checked_positions(positions, len(self.radii))
+        parts = len(self._threads.parts(len(self.radii), FEWEST_SHARED))
+        if parts > 1:
+            return self._shared(positions, parts)
         close, tests = cells.close_pairs(positions, self._half, self._arrays, self._keys)
         if close > len(self._keys):  # count first, then make room: rare, as the room is kept
             self._keys = np.empty(close + close // 2, np.int64)
             cells.close_pairs(positions, self._half, self._arrays, self._keys)
         self.pair_tests += tests
         keys = self._keys[:close]
+        keys.sort()
+        return unpack(keys)
+
+    def _shared(self, positions: Floats, parts: int) -> Pairs:
+        """The same, with the bodies of every level shared out among threads in so many parts."""
+        cells.sort_into_cells(positions, self._half, self._arrays)
+        while len(self._of_parts) < parts:
+            self._of_parts.append(np.empty(0, np.int64))
+
+        def search(part: int, _: int) -> tuple[int, int]:
+            close, tests = cells.close_pairs_of_part(self._arrays, self._of_parts[part], part, parts)
+            if close > len(self._of_parts[part]):
+                self._of_parts[part] = np.empty(close + close // 2, np.int64)
+                cells.close_pairs_of_part(self._arrays, self._of_parts[part], part, parts)
+            return close, tests
+
+        found = self._threads.each(search, tuple((part, part + 1) for part in range(parts)))
+        self.pair_tests += sum(tests for _, tests in found)
+        keys = np.concatenate([self._of_parts[part][:close] for part, (close, _) in enumerate(found)])
         keys.sort()
         return unpack(keys)
 

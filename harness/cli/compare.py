@@ -244,7 +244,10 @@ def _print(found: Comparison) -> None:
 
 
 def _failed(failure: Failure) -> str:
-    where = f"at {failure.pose} (call {failure.query_index})"
+    from harness.compare.outcome import LOADING
+
+    loading = failure.pose == LOADING
+    where = "before it was asked anything" if loading else f"at {failure.pose} (call {failure.query_index})"
     if failure.kind == "claim":
         return f"{failure.backend} is wrong: {failure.reason}"
     if failure.kind == "crashed":

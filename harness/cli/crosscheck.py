@@ -159,10 +159,11 @@ def cross_check(
         progress(f"{name}: contacts of the same motion")
         yield (FRAMES, name), _events(experiment, meshes, name, extent, budget)
     compared: Found = {}
+    queries = [(query, asked) for query, asked in names.items() if len(asked) > 1]
     # what flies goes first, of every query, so that a budget leaves out what is hard of all rather than all of some
     for pose_sets_of in (_flown_sets, _hard_sets):
-        for query, asked in names.items():
-            if len(asked) > 1:
+        for place, (query, asked) in enumerate(queries):
+            with budget.share(len(queries) - place):
                 pose_sets = pose_sets_of(experiment, meshes, extent, query)
                 for pair, found in compare_all(pose_sets, asked, progress, budget=budget).items():
                     compared.setdefault(pair, Comparison()).add(found)

@@ -31,8 +31,6 @@ COMMANDS = {
 }
 
 
-# What the system says of a library that it has no memory for.
-_OUT_OF_MEMORY = ("failed to map segment", "annot allocate memory")
 _CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
 
 
@@ -83,8 +81,10 @@ def _run(words: Sequence[str]) -> int:
     except KeyboardInterrupt as interruption:
         print("interrupted", file=sys.stderr)
         return exit_code(interruption)
-    except (MemoryError, ImportError) as error:
-        if isinstance(error, ImportError) and not any(words in str(error) for words in _OUT_OF_MEMORY):
+    except (MemoryError, ImportError, OSError) as error:
+        from harness.process_limits import out_of_memory
+
+        if not out_of_memory(error):
             raise
         print("memory ran out: this process may take less than the command needs (`ulimit -v`)", file=sys.stderr)
         return 1

@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     import sys
     from dataclasses import asdict
 
-    from harness.runner.execute import plan_of
+    from harness.runner.point import plan_of
     from harness.runner.preparation import prepare
     from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import files_of

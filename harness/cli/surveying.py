@@ -26,11 +26,18 @@ from harness.compare.script import script_of
 from harness.experiment.experiment import Experiment
 from harness.measure.machine import package_versions
 from harness.runner.key import point_key
+from harness.runner.scene_of_point import build_scene
 from harness.runner.servers import files_of
-from harness.vocabulary import OWN_BACKEND
+from harness.vocabulary import OWN_BACKEND, Family
 
 # s for the atlas of an experiment within a sweep; `harness compare` takes as long as it takes.
 SWEPT_SECONDS = 170.0
+
+# Of a size: by less no number near 1 differs from its neighbour.
+_SMALLEST = 1e-16
+
+RESTING: Family = "resting"
+"""The family whose poses are recorded, and not drawn."""
 
 
 @dataclass(frozen=True)
@@ -100,14 +107,20 @@ def surveyed(
 ) -> Surveyed:
     """Ask every engine about every family, shape and mesh of an experiment; then make its cases smaller."""
     atlas = Atlas()
-    wanted = {(point.scene.shape, point.scene.mesh_names): point for point in experiment.points}
-    for (shape, _), point in wanted.items():
-        measure = experiment.measure
+    wanted = {(point.scene.shape, point.scene.mesh_names, point.motion.poses): point for point in experiment.points}
+    measure = experiment.measure
+    drawn = tuple(family for family in measure.families if family != RESTING)
+    for (shape, _, _), point in wanted.items():
+        files = files_of(experiment, point, meshes)
+        recorded = build_scene(point, files, measure.memory) if RESTING in measure.families else None
         for query in measure.family_queries:
             asked = names if query == "collision" else (*names, OWN)
-            how = measure.families, measure.family_poses, asked, budget, progress
-            for mesh in files_of(experiment, point, meshes).meshes or (None,):
-                atlas.add(survey(shape, mesh, *how, made=SURVEYS[query]))
+            how = measure.family_poses, asked, budget, progress
+            for mesh in files.meshes or (None,):
+                atlas.add(survey(shape, mesh, drawn, *how, made=SURVEYS[query]))
+            if recorded is not None:
+                only = files.meshes[0] if len(files.meshes) == 1 else None
+                atlas.add(survey(shape, only, (RESTING,), *how, made=SURVEYS[query], recorded=recorded))
     found = Comparison(
         cases=list(atlas.cases.values()),
         failures=atlas.failures,
@@ -150,8 +163,12 @@ def cell_text(cell: Cell) -> str:
     off = "from touching" if cell.query == "collision" else "off"
     wrong = (
         f"{cell.wrong} wrong, {rate:.3g} in a million [{low:.3g}, {high:.3g}], {cell.beyond} of them beyond its "
-        f"tolerance, the farthest {cell.deepest:.3g} of a size {off}"
+        f"tolerance, the farthest {_share(cell.deepest)} of a size {off}"
         if cell.wrong
         else f"none wrong, at most {high:.3g} in a million"
     )
     return f"{cell.engine}: {seen}: {cell.verdicts} verdicts, {wrong}; {1e6 * cell.seconds:.3g} µs each"
+
+
+def _share(deepest: float) -> str:
+    return f"{deepest:.3g}" if deepest >= _SMALLEST else f"less than {_SMALLEST:g}"

@@ -6,7 +6,7 @@ that an error that all engines share counts as well, and rates of wrong verdicts
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 
@@ -15,11 +15,11 @@ from scipy.special import betaincinv
 
 from harness.compare.budget import Budget
 from harness.compare.comparison import MOST_FAILURES
-from harness.compare.families import family_poses
+from harness.compare.families import family_poses, resting_poses
 from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError, preload
 from harness.compare.outcome import Case, Failure
 from harness.compare.pair_audit import band
-from harness.compare.poses import Pose
+from harness.compare.poses import Pose, PoseSet
 from harness.compare.tally import NamePair
 from harness.compare.truths import Truths
 from harness.scene.mesh import Mesh
@@ -111,6 +111,7 @@ def survey(
     progress: Callable[[str], None] = lambda line: None,
     timeout: float = ANSWER_SECONDS,
     made: type[Survey] | None = None,
+    recorded: Scene | None = None,
 ) -> Atlas:
     """Ask engines about every pose of some families, and judge every answer.
 
@@ -124,6 +125,7 @@ def survey(
     progress : told what is being done
     timeout : s for an answer
     made : what is asked; whether they touch, if nothing is said
+    recorded : whose poses the family "resting" is of
     """
     atlas, made = Atlas(), made or Survey
     for name in names:
@@ -131,10 +133,14 @@ def survey(
     for family in families:
         what = f"{made.query}, {family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:
-            budget.left_out.append(f"{what}: not asked, {budget.seconds:g} s were spent")
+            budget.left_out.append(f"{what}: not asked, {budget.why}")
             continue
         progress(f"{what}: {count} poses")
-        made(atlas, family, shape, mesh, names, budget, timeout).ask(count)
+        if family == "resting" and recorded is not None:
+            sets = resting_poses(recorded, count)
+        else:
+            sets = family_poses(family, shape, (mesh,) if mesh else (), count)
+        made(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
     return atlas
 
 
@@ -163,9 +169,9 @@ class Survey:
         self._places: dict[str, int] = {}
         self._seconds: dict[str, list[float]] = {}
 
-    def ask(self, count: int) -> None:
+    def ask(self, pose_sets: Iterable[PoseSet]) -> None:
         """Every engine about every pose."""
-        for pose_set in family_poses(self.family, self.shape, (self.mesh,) if self.mesh else (), count):
+        for pose_set in pose_sets:
             with ExitStack() as processes:
                 asked = self._loaded(pose_set.scene, processes)
                 # an engine that rounds its hulls is asked about poses of those, and judged by them
@@ -176,7 +182,7 @@ class Survey:
                     if self.budget.spent:
                         self.budget.left_out.append(
                             f"{self.family}, {self.shape}: {len(whole) - place} of {len(whole)} poses not asked, "
-                            f"{self.budget.seconds:g} s were spent"
+                            f"{self.budget.why}"
                         )
                         break
                     self.ask_at(place, asked, held, poses)

@@ -10,7 +10,7 @@ from harness.compare.audit import audit_of
 from harness.compare.budget import Budget
 from harness.compare.group import Group, load
 from harness.compare.isolated import ANSWER_SECONDS, preload
-from harness.compare.outcome import Case, Comparison, Failure
+from harness.compare.outcome import LOADING, Case, Comparison, Failure
 from harness.compare.poses import Pose, PoseSet
 from harness.compare.query_answers import Told, make_ready
 from harness.compare.question import COLLISION, Question
@@ -65,7 +65,7 @@ def compare_all(
         scene = pose_set.scene
         what = f"{_asked(pose_set)}{len(scene.bodies)} bodies, shape {scene.shape}"
         if budget.spent:
-            budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.seconds:g} s were spent")
+            budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.why}")
             continue
         with budget.paused():
             for name in names:
@@ -133,13 +133,24 @@ def _compare_at(
                 asked = "" if question.query == "collision" else f" asked {question.query}"
                 line = f"{pair[0]} and {pair[1]} are not comparable on shape {shape}{asked}"
                 found.unsupported.append(f"{line}: {name}: {loaded.unusable[name]}")
+        for name in sorted(loaded.broken):
+            pair = next(pair for pair in whole if name in pair)
+            whole[pair].failures.append(Failure(pair, name, LOADING, 0, loaded.unusable[name]))
         for name, claim in loaded.claims.items():
             pair = next(pair for pair in whole if name in pair)
-            whole[pair].failures.append(Failure(pair, name, "loading", 0, claim, kind="claim"))
+            whole[pair].failures.append(Failure(pair, name, LOADING, 0, claim, kind="claim"))
         for group in loaded.groups:
             for pair, found in _Questions(pose_set, group, budget, again=True).ask().items():
                 whole[pair].add(found)
-    return whole, loaded.hanging
+        answering = [asked for group in loaded.groups for asked in group.asked.values()]
+        silent = {asked.name for asked in answering if asked.timeouts >= MOST_FAILURES}
+        for name in sorted(silent):
+            pair = next(pair for pair in whole if name in pair)
+            whole[pair].unsupported.append(
+                f"{name} did not answer within {timeout:g} s at {MOST_FAILURES} poses of a scene, and is not asked "
+                "about other scenes"
+            )
+    return whole, loaded.hanging.union(silent)
 
 
 class _Questions:
@@ -175,7 +186,7 @@ class _Questions:
             self._budget.left_out.append(
                 f"{self._asked_before}{len(scene.bodies)} bodies, shape {scene.shape}{_sizes(scene)}: "
                 f"{len(self._poses) - place} of "
-                f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.seconds:g} s were spent"
+                f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.why}"
             )
         if self._again:
             self._ask_again()

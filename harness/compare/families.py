@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from harness.arrays import Floats
+from harness.compare.near import touching_spheres
 from harness.compare.placing import (
     FEATURES,
     at_contact,
@@ -25,6 +26,7 @@ from harness.compare.placing import (
     two_bodies,
 )
 from harness.compare.poses import Pose, PoseSet
+from harness.scene.ignored_pairs import without
 from harness.scene.mesh import Mesh, Surface
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape
@@ -43,6 +45,49 @@ def family_poses(family: str, shape: Shape, meshes: tuple[Mesh, ...], count: int
         some = count // len(variants) + (number < count % len(variants))
         scene = two_bodies(shape, meshes, sizes, away)
         yield PoseSet(scene, partial(_drawn, draw=draw, away=away, seed=(_SEED, number), count=some), hard=True)
+
+
+def resting_poses(scene: Scene, count: int) -> Iterator[PoseSet]:
+    """Bodies of a scene with recorded poses whose bounding spheres touch, two by two, as many as said at the most.
+
+    They are taken from all frames alike, and those of bodies of the same meshes and sizes are asked together.
+
+    Parameters
+    ----------
+    scene : whose poses were recorded
+    count : poses at the most
+    """
+    recorded = scene.poses
+    assert recorded is not None, "the family resting is of recorded poses"
+    near = [
+        (frame, i, j)
+        for frame, places in enumerate(recorded.positions)
+        for i, j in without(touching_spheres(places, scene.bodies.radii), scene.ignored).tolist()
+    ]
+    chosen = near if len(near) <= count else [near[place * len(near) // count] for place in range(count)]
+    alike: dict[tuple[float, ...], list[tuple[int, int, int]]] = {}
+    for frame, i, j in chosen:
+        kind = (*scene.mesh_of[[i, j]].tolist(), *scene.bodies.sizes[[i, j]].tolist())
+        alike.setdefault(kind, []).append((frame, i, j))
+    for some in alike.values():
+        _, i, j = some[0]
+        meshes = tuple(scene.meshes[mesh] for mesh in scene.mesh_of[[i, j]]) if scene.meshes else ()
+        sizes = float(scene.bodies.sizes[i]), float(scene.bodies.sizes[j])
+        away = float(np.abs(recorded.positions).max())
+        two = two_bodies(scene.shape, meshes if meshes[:1] != meshes[1:] else meshes[:1], sizes, away)
+        poses = tuple(
+            Pose(
+                f"bodies {i} and {j} at {recorded.time[frame]:.6g} s",
+                np.ascontiguousarray(recorded.positions[frame, [i, j]]),
+                np.ascontiguousarray(recorded.quaternions[frame, [i, j]]),
+            )
+            for frame, i, j in some
+        )
+        yield PoseSet(two, partial(_as_they_are, poses), hard=True)
+
+
+def _as_they_are(poses: tuple[Pose, ...], held: Scene) -> tuple[Pose, ...]:
+    return poses
 
 
 def _drawn(scene: Scene, draw: Draw, away: float, seed: tuple[int, int], count: int) -> tuple[Pose, ...]:

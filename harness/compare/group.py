@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from harness.arrays import Floats
-from harness.compare.isolated import Facts, HangingError, Isolated, UnusableError
+from harness.compare.isolated import BrokenError, Facts, HangingError, Isolated, UnusableError
 from harness.compare.question import COLLISION, Question
 from harness.compare.tally import NamePair
 from harness.scene.hull import Hull
@@ -49,12 +49,14 @@ class Loaded:
     groups : one for each set of hulls
     unusable : by name, why it cannot take the scene
     claims : by name, what it says of itself that cannot be accepted
-    hanging : those among the unusable that did not end
+    broken : those among the unusable that failed over it
+    hanging : those among the broken that did not end
     """
 
     groups: tuple[Group, ...]
     unusable: dict[str, str]
     claims: dict[str, str]
+    broken: frozenset[str]
     hanging: frozenset[str]
 
 
@@ -65,6 +67,7 @@ def load(
     asked: dict[str, Isolated] = {}
     unusable: dict[str, str] = {}
     claims: dict[str, str] = {}
+    broken: set[str] = set()
     hanging: set[str] = set()
 
     def enter(name: str, held: Scene) -> Isolated | None:
@@ -72,6 +75,8 @@ def load(
             return processes.enter_context(Isolated(name, held, timeout, question))
         except UnusableError as error:
             unusable[name] = str(error)
+            if isinstance(error, BrokenError):
+                broken.add(name)
             if isinstance(error, HangingError):
                 hanging.add(name)
             return None
@@ -96,7 +101,9 @@ def load(
             if entered is not None:
                 again[name] = entered
         groups.append(Group(held, again, tuple(pair for pair in mine if set(pair) <= set(again))))
-    return Loaded(tuple(group for group in groups if group.pairs), unusable, claims, frozenset(hanging))
+    return Loaded(
+        tuple(group for group in groups if group.pairs), unusable, claims, frozenset(broken), frozenset(hanging)
+    )
 
 
 def unacceptable(facts: Facts, scene: Scene) -> str | None:

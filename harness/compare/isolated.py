@@ -105,7 +105,11 @@ class UnusableError(Exception):
     """The backend cannot take the scene at all, and why."""
 
 
-class HangingError(UnusableError):
+class BrokenError(UnusableError):
+    """It failed over a scene that it should have taken or refused: it crashed, hung, raised or cannot be imported."""
+
+
+class HangingError(BrokenError):
     """It did not take the scene in the time that it has, as it would any other, as far as one can tell."""
 
 
@@ -123,6 +127,7 @@ class Isolated:
     ----------
     name, question : as given
     facts : what it declares of itself, once entered
+    timeouts : how often it has not answered in time
 
     Raises
     ------
@@ -135,6 +140,7 @@ class Isolated:
     ) -> None:
         self.name, self.question = name, question
         self._scene, self._timeout = scene, timeout
+        self.timeouts = 0
         self._child: Child | None = None
 
     def __enter__(self) -> Isolated:
@@ -178,6 +184,7 @@ class Isolated:
         if isinstance(answer, bytes):
             return pickle.loads(answer)
         ending, self._child = self._child.end(), None
+        self.timeouts += answer == "timeout"
         return f"no answer within {self._timeout:g} s" if answer == "timeout" else ending.instead_of("an answer")
 
     def seconds_a_query(self, poses: Sequence[Pose], near: NearQuestion | None = None) -> float | None:
@@ -204,10 +211,10 @@ class Isolated:
                     f"it did not load the scene within {_LOADING * self._timeout:g} s, and is not asked again"
                 )
             if not isinstance(answer, bytes):
-                raise UnusableError(f"loading the scene, it {self._child.end().instead_of('an answer')}")
-            loaded: Facts | str = pickle.loads(answer)
-            if isinstance(loaded, str):
-                raise UnusableError(loaded)
+                raise BrokenError(f"loading the scene, it {self._child.end().instead_of('an answer')}")
+            loaded: Facts | _Refusal = pickle.loads(answer)
+            if isinstance(loaded, _Refusal):
+                raise (BrokenError if loaded.broken else UnusableError)(loaded.why)
         except BaseException:
             self._end()
             raise
@@ -217,6 +224,14 @@ class Isolated:
         if self._child is not None:
             self._child.end()
             self._child = None
+
+
+@dataclass(frozen=True)
+class _Refusal:
+    """Why there are no facts, and whether that is a failure of the backend: else it says what it is not made for."""
+
+    why: str
+    broken: bool
 
 
 def preload(name: str) -> None:
@@ -246,7 +261,9 @@ def _serve(name: str, scene: Scene, asked: Question, channel: Channel) -> None:
         made.load(scene)
         facts = _facts(made, scene)
     except Exception as error:  # a plugin may fail in any way
-        channel.send(pickle.dumps(str(error) if isinstance(error, InputError) else _told(error)))
+        broken = not isinstance(error, InputError) or isinstance(error, registry.BackendError)
+        why = str(error) if isinstance(error, InputError) else _told(error)
+        channel.send(pickle.dumps(_Refusal(why, broken)))
         return
     channel.send(pickle.dumps(facts))
     if isinstance(made, QueryAnswers):

@@ -65,12 +65,17 @@ class Case:
         return "too wide" if self.told > self.judgement.gap else "too narrow"
 
 
+LOADING = "loading"
+"""In the place of the name of a pose: as the backend was given the scene."""
+
+
 @dataclass(frozen=True)
 class Failure:
     """A backend that crashed, hung or raised at a pose, or cannot be held to what it says; `query_index` as in `Case`.
 
     Parameters
     ----------
+    pose : its name, or `LOADING`
     kind : "crashed"; "random" or "depends on order" for a verdict that changes; "claim" for what it says of itself
     bodies : of the pair whose verdict changes
     """
@@ -118,7 +123,8 @@ class Comparison:
         merge(self.gaps, other.gaps)
         self.cases += other.cases
         self.shared += other.shared
-        self.failures += other.failures
+        # what fails to load fails so at every scene
+        self.failures += [one for one in other.failures if one.pose != LOADING or one not in self.failures]
         self.flights += other.flights
         self.left_out += [line for line in other.left_out if line not in self.left_out]
         self.unsupported += [line for line in other.unsupported if line not in self.unsupported]

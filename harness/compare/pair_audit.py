@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from harness.compare.certificate import Judgement
 from harness.compare.group import LARGEST_TOLERANCE
 from harness.compare.isolated import Facts
+from harness.compare.near import touching_spheres
 from harness.compare.outcome import Case, Comparison
 from harness.compare.poses import Pose
 from harness.compare.query_answers import Told
@@ -154,14 +154,10 @@ def checked_pair(scene: Scene, pose: Pose, query_index: int, *, flown: bool, wit
 
 
 def _near_pair(scene: Scene, pose: Pose, query_index: int, within: float) -> Pair | None:
-    radii = scene.bodies.radii + 0.5 * within
-    pairs = cKDTree(pose.positions).query_pairs(2 * float(radii.max()), output_type="ndarray")
-    apart = np.linalg.norm(pose.positions[pairs[:, 0]] - pose.positions[pairs[:, 1]], axis=1)
-    near = without(np.sort(pairs[apart <= radii[pairs].sum(axis=1)], axis=1), scene.ignored)
+    near = without(touching_spheres(pose.positions, scene.bodies.radii + 0.5 * within), scene.ignored)
     if not len(near):
         return None
-    ordered = near[np.lexsort((near[:, 1], near[:, 0]))]
-    i, j = ordered[np.random.default_rng(query_index).integers(len(ordered))].tolist()
+    i, j = near[np.random.default_rng(query_index).integers(len(near))].tolist()
     return i, j
 
 

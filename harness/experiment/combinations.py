@@ -200,6 +200,20 @@ def backend_answers_the_query(values: Values) -> Conflict | None:
     return None
 
 
+def threads_have_pairs_to_share(values: Values) -> Conflict | None:
+    """Several threads share out the pairs of frames, where kernels of this program go through them."""
+    if values["threads"] == 1:
+        return None
+    if not ALGORITHMS[values["algorithm"]].shared:
+        able = listed([name for name, word in ALGORITHMS.items() if word.shared])
+        message = f"algorithm {values['algorithm']} runs on one thread; threads {{}} can be had with {able}"
+        return Conflict(message, ("algorithm", "threads"), excludable=True)
+    if values["query"] != "collision":
+        message = f"query {values['query']} runs on one thread, not on {{}}; query collision can use several"
+        return Conflict(message, ("query", "threads"), excludable=True)
+    return None
+
+
 def poses_are_frames(values: Values) -> Conflict | None:
     """Recorded motion is what it is: no event of it can be computed ahead, or change it."""
     if values["poses"] is not None and not ALGORITHMS[values["algorithm"]].stepped:
@@ -230,6 +244,7 @@ ENGINE: tuple[Rule, ...] = (
     within_is_asked_for,
     algorithm_answers_the_query,
     backend_answers_the_query,
+    threads_have_pairs_to_share,
 )
 POINT: tuple[Rule, ...] = (
     *SCENE,

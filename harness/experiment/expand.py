@@ -91,6 +91,12 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
             message = "a reference knows gaps of recorded poses and no hits: choose query tolerance or distance"
             problems.add(("measure", "reference", KEY), message)
             return expansion
+        if "resting" in measure.families and any(point["poses"].value is None for point in unique):
+            message = (
+                "the family resting is of recorded poses, and motion.poses names none; record some, or leave it out"
+            )
+            problems.add(("measure", "families", KEY), message)
+            return expansion
         expansion.points = tuple(_points(unique, measure.reference))
         expansion.swept = _swept(unique, mentioned)
     return expansion

@@ -33,6 +33,7 @@ NUMERIC = {
     "restitution",
     "within",
     "tolerance",
+    "threads",
     *DERIVED,
 }
 

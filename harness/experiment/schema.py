@@ -32,6 +32,7 @@ NotNegative = Annotated[Number, Field(ge=0)]
 MOST_BODIES = 10**9
 LARGEST_SEED = 2**63 - 1
 MOST_RUNS = 10**9
+MOST_THREADS = 64
 BodyNumber = Annotated[Whole, Field(ge=0)]
 
 
@@ -178,6 +179,9 @@ class EngineSpec(Declared):
     )
     tolerance: Positive = Field(
         1e-6, description="of size; nearer surfaces touch, and gaps are known to it (no effect on spheres)"
+    )
+    threads: Annotated[Whole, Field(ge=1, le=MOST_THREADS)] = Field(
+        1, description="that share out the pairs of a frame; with more than one, elapsed time tells what they save"
     )
     stages: dict[str, Switch] = Field({}, description="stages forced on or off, for an ablation; see `harness plan`")
 

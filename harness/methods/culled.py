@@ -15,7 +15,7 @@ import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.broadphase.ignored import asked_about
-from harness.broadphase.pairs import BroadPhase
+from harness.broadphase.pairs import BroadPhase, Shareable
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
 from harness.methods.query_stages import decide_exact_stages
@@ -29,6 +29,7 @@ from harness.narrowphase.hull_pairs import HullPairs
 from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.placement import Places
 from harness.scene.scene import Scene
+from harness.threads import Threads
 
 if TYPE_CHECKING:
     from harness.methods.narrow_phase import NarrowPhase
@@ -123,14 +124,22 @@ class Culled(SteppedMethod):
         """A new broad phase for the bodies of a scene."""
         return self.scheme.make(scene.enclosing_radii, scene.box, plan.keeps("size_classes"))
 
+    def warnings(self, scene: Scene) -> tuple[str, ...]:
+        if self.threads == 1:
+            return ()
+        return (f"{self.threads} THREADS: CPU times are sums over them; elapsed times tell what they save",)
+
     def detector(self, scene: Scene, plan: Plan) -> Detector:
-        broad_phase = asked_about(self.broad_phase(scene, plan), scene.ignored)
+        threads, found = Threads(self.threads), self.broad_phase(scene, plan)
+        if isinstance(found, Shareable):
+            found.share_with(threads)
+        broad_phase = asked_about(found, scene.ignored)
         if scene.shape == "sphere":
             return CloseSpheres(broad_phase)
         # only a scene of hulls or meshes needs FCL, and then it is imported
         from harness.methods.narrow_phase import narrow_phase
 
-        return CulledDetector(broad_phase, narrow_phase(scene, plan))
+        return CulledDetector(broad_phase, narrow_phase(scene, plan, threads))
 
     def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
         yield from super().warm_ups(meshes)
@@ -138,6 +147,8 @@ class Culled(SteppedMethod):
             return
         algorithm = self.name.algorithm
         yield f"close pairs of {algorithm}", partial(_find_close_pairs, self)
+        if self.threads > 1:
+            yield f"close pairs of {algorithm} by threads", partial(_share_close_pairs, self)
         if self.name.shape != "sphere":
             yield f"pairs of hulls{of_meshes(meshes)}", partial(_settle_hulls, meshes)
         if self.name.shape == "mesh":
@@ -261,6 +272,13 @@ def _find_close_pairs(method: Culled) -> None:
     found = CloseSpheres(method.broad_phase(scene, method.detection(scene)))
     found.pairs(scene.bodies.positions, scene.bodies.quaternions)
     _ = found.counters  # what is counted is compiled as well
+
+
+def _share_close_pairs(method: Culled) -> None:
+    scene = two_bodies("sphere")
+    found = method.broad_phase(scene, method.detection(scene))
+    if isinstance(found, Shareable):
+        found.compile_shared()
 
 
 def _settle_hulls(meshes: int) -> None:

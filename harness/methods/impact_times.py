@@ -160,5 +160,5 @@ def _search_of(scene: Scene) -> tuple[_Search, float]:
         hulls = hulls_of_bodies([support_map(of_mesh) for of_mesh in vertices], scene.mesh_of)
         reach = max(float(np.linalg.norm(of_mesh, axis=1).max()) for of_mesh in vertices)
         return lambda asked, flights, found: hull_pair_onsets(asked, flights, hulls, found), reach
-    shapes = shapes_of_bodies([mesh_shape(mesh) for mesh in scene.meshes], scene.mesh_of)
+    shapes = shapes_of_bodies([mesh_shape(mesh, followed=True) for mesh in scene.meshes], scene.mesh_of)
     return lambda asked, flights, found: mesh_pair_onsets(asked, flights, shapes, found), shapes.radius

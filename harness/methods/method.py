@@ -44,6 +44,7 @@ class Method(ABC):
         knob
     within : m, the gap up to which pairs are asked about, for the queries that have one
     forced : stages forced on (True) or off (False) for an ablation
+    threads : that share out the pairs of a frame, of an algorithm that can be shared
     """
 
     shapes: ClassVar[tuple[Shape, ...]] = ("sphere", "hull", "mesh")
@@ -55,8 +56,10 @@ class Method(ABC):
         tolerance: float = 1e-6,
         within: float | None = None,
         forced: Mapping[str, bool] | None = None,
+        threads: int = 1,
     ) -> None:
         self.name = name
+        self.threads = threads
         self.tolerance = tolerance
         self.within = within
         self.forced = dict(forced or {})

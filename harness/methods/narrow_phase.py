@@ -20,6 +20,7 @@ from harness.narrowphase.verdicts import PairVerdict, PairVerdicts, which
 from harness.scene.hull import Hull, hull_of
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+from harness.threads import Threads
 
 # A convex mesh may lie within its hull by 1e-9 of its diameter: its hull decides where it is by more.
 ON_HULL = 1e-8
@@ -46,13 +47,13 @@ class NarrowPhase(Protocol):
         """
 
 
-def narrow_phase(scene: Scene, plan: Plan) -> NarrowPhase:
-    """Of hulls or meshes, as the plan has it."""
+def narrow_phase(scene: Scene, plan: Plan, threads: Threads) -> NarrowPhase:
+    """Of hulls or meshes, as the plan has it; threads share out the pairs that kernels decide on."""
     if not plan.keeps("hull_axis"):
         return FclNarrowPhase(scene)
     if scene.shape == "hull":
-        return HullNarrowPhase(scene)
-    return MeshNarrowPhase(scene, crossing=plan.keeps("crossing"), containment=plan.keeps("containment"))
+        return HullNarrowPhase(scene, threads)
+    return MeshNarrowPhase(scene, threads, crossing=plan.keeps("crossing"), containment=plan.keeps("containment"))
 
 
 class FclNarrowPhase:
@@ -72,10 +73,10 @@ class FclNarrowPhase:
 class HullNarrowPhase:
     """Settles hulls in a kernel, and puts to FCL only pairs nearer to touching than rounding can tell."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, threads: Threads) -> None:
         self._fcl = FclPairTest(scene)
         self._places = Places(scene.bodies.sizes)
-        self._hulls = HullPairs(hulls_of_size_1(scene), scene.mesh_of, MARGIN)
+        self._hulls = HullPairs(hulls_of_size_1(scene), scene.mesh_of, MARGIN, threads)
         self._tests = 0
 
     @property
@@ -101,6 +102,7 @@ class MeshNarrowPhase:
     Parameters
     ----------
     scene : Scene
+    threads : that share out the pairs that kernels decide on
     crossing : look for triangles that cross before FCL is asked; else FCL has all that the hulls leave
     containment : look for meshes that are inside others
 
@@ -109,13 +111,13 @@ class MeshNarrowPhase:
     contained : (k, 2) int array, the pairs of the last frame of which one surface is inside the other; no hits
     """
 
-    def __init__(self, scene: Scene, *, crossing: bool = True, containment: bool = True) -> None:
+    def __init__(self, scene: Scene, threads: Threads, *, crossing: bool = True, containment: bool = True) -> None:
         sizes, meshes, mesh_of = scene.bodies.sizes, scene.meshes, scene.mesh_of
         margin = max(ON_HULL if mesh.convex else MARGIN + overhang(mesh) for mesh in meshes)
         self._fcl = FclPairTest(scene)
         self._places = Places(sizes)
-        self._hulls = HullPairs([mesh.hull for mesh in meshes], mesh_of, margin)
-        self._settle = MeshPairs(meshes, mesh_of).settle if crossing else _all_open
+        self._hulls = HullPairs([mesh.hull for mesh in meshes], mesh_of, margin, threads)
+        self._settle = MeshPairs(meshes, mesh_of, threads).settle if crossing else _all_open
         # Convex bodies that overlap touch, unless one contains the other, for which it must be larger.
         self._convex = np.array([mesh.convex for mesh in meshes])[mesh_of]
         self._any_convex = bool(self._convex.any())

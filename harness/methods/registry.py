@@ -16,6 +16,7 @@ def method_of(
     tolerance: float = 1e-6,
     within: float | None = None,
     forced: Mapping[str, bool] | None = None,
+    threads: int = 1,
 ) -> Method:
     """The method of a name, set as a run has it.
 
@@ -23,10 +24,10 @@ def method_of(
     ----------
     name : MethodName
         Of an algorithm in `harness.vocabulary.ALGORITHMS`.
-    tolerance, within, forced : see `Method`
+    tolerance, within, forced, threads : see `Method`
     """
     module = f"harness.methods.{name.algorithm.replace('-', '_')}"
     if find_spec(module) is None:
         module = "harness.methods.culled"
     made: type[Method] = import_module(module).METHOD
-    return made(name, tolerance=tolerance, within=within, forced=forced)
+    return made(name, tolerance=tolerance, within=within, forced=forced, threads=threads)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints
 from harness.kernel import first_or_call, instruction
+from harness.narrowphase.clearance_field import ClearanceField
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.triangle_tree import TriangleTree
@@ -57,12 +58,29 @@ class TriangleTrees(NamedTuple):
     mesh_of: Ints
 
 
+class ClearanceFields(NamedTuple):
+    """The fields of several meshes.
+
+    Attributes
+    ----------
+    values : (m, n, n, n) float32 array, of a mesh without a field 0
+    points, caps : those of each ClearanceField, one after another
+    begins : (m + 1, 2) int array, where those of each mesh begin
+    """
+
+    values: NDArray[np.float32]
+    points: Floats
+    caps: Floats
+    begins: Ints
+
+
 class MeshShapes(NamedTuple):
     """The surfaces of several meshes; `radius` is that of a sphere around the centre that holds any of them."""
 
     hulls: SupportMaps
     trees: TriangleTrees
     radius: float
+    fields: ClearanceFields
 
 
 Hulls = SupportMap | SupportMaps
@@ -101,7 +119,18 @@ def shapes_of_bodies(shapes: Sequence[MeshShape], mesh_of: Ints) -> Shapes:
     trees = trees_of_bodies([one.tree for one in shapes], mesh_of)
     if isinstance(hulls, SupportMap) or isinstance(trees, TriangleTree):
         return shapes[0]
-    return MeshShapes(hulls, trees, max(one.radius for one in shapes))
+    return MeshShapes(hulls, trees, max(one.radius for one in shapes), _fields([one.field for one in shapes]))
+
+
+def _fields(fields: Sequence[ClearanceField]) -> ClearanceFields:
+    nodes = max(len(field.values) for field in fields)
+    values = np.zeros((len(fields), nodes, nodes, nodes), np.float32)
+    for mesh, field in enumerate(fields):
+        if len(field.values):
+            values[mesh] = field.values
+    parts = [(field.points, field.caps) for field in fields]
+    points, caps = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    return ClearanceFields(values, points, caps, begins_of(parts))
 
 
 def begins_of(parts: Sequence[tuple[NDArray[Any], ...]]) -> Ints:
@@ -133,7 +162,10 @@ def _tree_among(trees: Any, body: int) -> Any:
 
 
 def _shape_among(shapes: Any, body: int) -> Any:
-    return MeshShape(hull_of(shapes.hulls, body), tree_of(shapes.trees, body), shapes.radius)
+    fields, mesh = shapes.fields, shapes.hulls.mesh_of[body]
+    here, end = fields.begins[mesh], fields.begins[mesh + 1]
+    field = ClearanceField(fields.values[mesh], fields.points[here[0] : end[0]], fields.caps[here[1] : end[1]])
+    return MeshShape(hull_of(shapes.hulls, body), tree_of(shapes.trees, body), shapes.radius, field)
 
 
 def _hull_of(context: Any, hulls: Any, body: Any) -> Any:

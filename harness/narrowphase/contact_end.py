@@ -1,8 +1,8 @@
 """Until when two bodies that touch go on touching, for hulls and for surfaces.
 
-A contact is followed step by step: while the bodies are in each other, as long as that certainly lasts; while the gap
-is within the tolerance, as long as it takes points to move by what is left of it. It ends when the gap is seen to be
-wider than that.
+A contact is followed step by step: while the bodies are in each other, as long as that certainly lasts, as depth or a
+crossing of triangles shows; while the gap is within the tolerance, as long as it takes points to move by what is left
+of it. It ends when the gap is seen to be wider than that.
 """
 
 from __future__ import annotations
@@ -17,11 +17,13 @@ from harness.kernel import inner, kernel
 from harness.narrowphase.crossing_duration import longest_crossing
 from harness.narrowphase.free_flight import Motion, RelativeMotion, fastest_passing, relative_motion, seen_at
 from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hull_distance
+from harness.narrowphase.immersion_duration import immersion_lasts
 from harness.narrowphase.mesh_advancement import MeshShape
+from harness.narrowphase.nearness_duration import NO_WITNESSES, nearest_points, nearness_lasts
 from harness.narrowphase.overlap_duration import overlap_lasts
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
-from harness.narrowphase.triangles_within import gap_of_leaves, triangles_within
+from harness.narrowphase.triangles_within import triangles_within
 from harness.narrowphase.vectors import scaled
 from harness.narrowphase.verdicts import PairVerdict, SearchVerdict
 
@@ -70,10 +72,12 @@ class Hold(NamedTuple):
     Attributes
     ----------
     lasts : s, for which they certainly stay in each other; 0 where that is not proved
+    near : s, for which they certainly stay near enough to each other; 0 where that is not proved
     room : m, by which the gap may still widen; below 0 where it is too wide already
     """
 
     lasts: float
+    near: float
     room: float
 
 
@@ -164,7 +168,7 @@ def end_of_contact(
         hold, memory = hold_of(shape_a, shape_b, relative_motion(a, b, now), near, memory)
         if hold.room < 0.0:
             return ContactEnd(SearchVerdict.FOUND, begin + now, step, begin + now), memory
-        wait = max(hold.lasts, max(hold.room, RESOLUTION / ENDING_GAP * near) / speed)
+        wait = max(max(hold.lasts, hold.near), max(hold.room, RESOLUTION / ENDING_GAP * near) / speed)
         if now + wait >= rest:
             return ContactEnd(SearchVerdict.NEVER, end, step, max(end, begin + (now + hold.lasts))), memory
         creeping = 0 if hold.lasts > 0.0 else creeping + 1
@@ -183,9 +187,9 @@ def hold_of_hulls(
     margin = MARGIN * (pose.size_a + pose.size_b)
     found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf, 0.0)
     if found.verdict != PairVerdict.TOUCHING:
-        return Hold(0.0, near - found.lower), found.warm_start
+        return Hold(0.0, 0.0, near - found.lower), found.warm_start
     overlap = overlap_lasts(hull_a, hull_b, seen, found.warm_start)
-    return Hold(overlap.lasts, near), overlap.warm_start
+    return Hold(overlap.lasts, 0.0, near), overlap.warm_start
 
 
 @inner
@@ -194,22 +198,35 @@ def hold_of_surfaces(
 ) -> tuple[Hold, LastCrossing]:
     """How firmly two surfaces touch, whose contact ends at a gap of `near`; and where to start next time."""
     trees, pose, stack = Trees(shape_a.tree, shape_b.tree), seen.pose, last.stack
+    reach_a, reach_b = shape_a.radius * pose.size_a, shape_b.radius * pose.size_b
+    deep = immersion_lasts(shape_a.field, shape_b.field, reach_a, reach_b, seen)
+    if deep > last.enough:  # at first and near the end, where it is shorter, a crossing lasts longer
+        return Hold(deep, 0.0, near), last
     margin = MARGIN * (pose.size_a + pose.size_b)
     start = last.leaves
     for _ in range(LEVELS_UP):
         start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
     found = longest_crossing(trees, seen, start, last.enough, NEARBY_STEPS, stack)
-    gap, leaves = 0.0, found.leaves
+    points, gap, leaves = NO_WITNESSES, 0.0, found.leaves
     if leaves.a < 0:
-        gap, leaves = gap_of_leaves(trees, pose, last.leaves, margin), last.leaves
+        points, leaves = nearest_points(trees, pose, last.leaves, margin), last.leaves
+        gap = points.gap
     # a crossing anywhere else may last longer; while the gap alone holds them, there mostly is none
     held = gap <= near and not found.lasts > 0.0
-    if (held and last.instants % SEARCH_EVERY == 0) or gap > near or 0.0 < found.lasts < last.enough:
+    if (
+        (held and last.instants % SEARCH_EVERY == SEARCH_EVERY - 1)
+        or (gap > near and last.instants == 0)
+        or 0.0 < found.lasts < last.enough
+    ):
         other = longest_crossing(trees, seen, ROOTS, last.enough, STEPS, stack)
         if other.lasts > found.lasts or (gap > 0.0 and other.leaves.a >= 0):
             found, gap, leaves = other, 0.0, other.leaves
     if gap > near:
         gap, leaves = triangles_within(trees, pose, near, margin, stack)
+        if gap > near:
+            return Hold(0.0, 0.0, near - gap), last
+        points = nearest_points(trees, pose, leaves, margin)
     if found.lasts > 0.0:
-        return Hold(found.lasts, near), LastCrossing(leaves, LESS * found.lasts, 0, stack)
-    return Hold(0.0, near - gap), LastCrossing(leaves, 0.0, last.instants + 1, stack)
+        return Hold(found.lasts, 0.0, near), LastCrossing(leaves, LESS * found.lasts, 0, stack)
+    lasts = nearness_lasts(points, seen, near)
+    return Hold(0.0, lasts, near - gap), LastCrossing(leaves, 0.0, last.instants + 1, stack)

@@ -24,6 +24,8 @@ from harness.narrowphase.verdicts import PairVerdict
 
 # Halvings of a time until the proof succeeds.
 HALVINGS = 40
+# Halvings of what is left between a time that was proved and one that was not.
+REFINEMENTS = 3
 # Crossing triangles among which the ones that cross longest are chosen, where none do for long enough.
 TRIALS = 6
 
@@ -57,6 +59,25 @@ class MovingEdge(NamedTuple):
     velocity_q: Vector
     bend: float
     growth: float
+
+
+Side = tuple[Vector, Vector]
+"""Of a triangle: the corner at which a side begins, and the unit vector inward from the side."""
+
+
+class Heights(NamedTuple):
+    """How far the ends of an edge are on either side of the plane of a triangle.
+
+    Attributes
+    ----------
+    above, below : m, of the first end above the plane, and of the second below it
+    rise, fall : m/s, at which these grow
+    """
+
+    above: float
+    below: float
+    rise: float
+    fall: float
 
 
 class Piercing(NamedTuple):
@@ -179,21 +200,40 @@ def edge_stays(face: Triangle, edge: MovingEdge, known: float) -> float:
     time = min(time, sqrt(2.0 * (above + below) / edge.bend) if edge.bend > 0.0 else np.inf)
     if time == np.inf:
         time = 1e6 if edge.growth == 0.0 else 0.0
+    inside = (face[0], inward0), (face[1], inward1), (face[2], inward2)
+    known_to_fail = np.inf
     for _ in range(HALVINGS):
         if time <= known:
             return 0.0
-        slack = 0.5 * (edge.bend + edge.growth * time) * time * time
-        through = Piercing(above, below, rise, fall, time, slack)
-        if (
-            min(above, above + rise * time) > slack
-            and min(below, below + fall * time) > slack
-            and stays_inside(face[0], inward0, edge, through)
-            and stays_inside(face[1], inward1, edge, through)
-            and stays_inside(face[2], inward2, edge, through)
-        ):
-            return time
+        if stays_through(inside, edge, Heights(above, below, rise, fall), time):
+            break
+        known_to_fail = time
         time *= 0.5
-    return 0.0
+    else:
+        return 0.0
+    for _ in range(REFINEMENTS):
+        if known_to_fail == np.inf:
+            break
+        middle = 0.5 * (time + known_to_fail)
+        if stays_through(inside, edge, Heights(above, below, rise, fall), middle):
+            time = middle
+        else:
+            known_to_fail = middle
+    return time
+
+
+@kernel
+def stays_through(inside: tuple[Side, Side, Side], edge: MovingEdge, ends: Heights, time: float) -> bool:
+    """Whether an edge certainly passes through a triangle until a time, s."""
+    slack = 0.5 * (edge.bend + edge.growth * time) * time * time
+    through = Piercing(ends.above, ends.below, ends.rise, ends.fall, time, slack)
+    return (
+        min(ends.above, ends.above + ends.rise * time) > slack
+        and min(ends.below, ends.below + ends.fall * time) > slack
+        and stays_inside(inside[0][0], inside[0][1], edge, through)
+        and stays_inside(inside[1][0], inside[1][1], edge, through)
+        and stays_inside(inside[2][0], inside[2][1], edge, through)
+    )
 
 
 @kernel

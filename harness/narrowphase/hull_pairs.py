@@ -22,6 +22,10 @@ from harness.narrowphase.support import support_map
 from harness.narrowphase.vectors import scaled, turned
 from harness.narrowphase.verdicts import PairVerdict, PairVerdicts
 from harness.scene.hull import Hull
+from harness.threads import Threads
+
+FEWEST_SHARED = 512
+"""Pairs that are worth handing over to another thread."""
 
 
 class Memory(NamedTuple):
@@ -38,6 +42,10 @@ class Memory(NamedTuple):
     axes: Floats
     warm_starts: Ints
 
+    def since(self, place: int) -> Memory:
+        """The memory of the pairs from a place on; the same arrays."""
+        return Memory(self.keys[place:], self.axes[place:], self.warm_starts[place:])
+
 
 class HullPairs:
     """Verdicts on pairs of bodies that have these hulls, in any sizes.
@@ -47,13 +55,15 @@ class HullPairs:
     hulls : of diameter 1, of each mesh
     mesh_of : (n,) int array, the number of each body's mesh
     margin : gap or overlap that a certificate must show, of the sum of the sizes
+    threads : that share out the pairs of a frame
 
     Attributes
     ----------
     searches : pairs so far that the axis of the last frame did not settle
     """
 
-    def __init__(self, hulls: Sequence[Hull], mesh_of: Ints, margin: float) -> None:
+    def __init__(self, hulls: Sequence[Hull], mesh_of: Ints, margin: float, threads: Threads | None = None) -> None:
+        self._threads = threads or Threads()
         self.searches = 0
         self._margin = margin
         self._hulls = hulls_of_bodies([support_map(hull.vertices) for hull in hulls], mesh_of)
@@ -84,12 +94,25 @@ class HullPairs:
             self._verdicts, self._now = np.empty(room, np.int8), memory(room)
         elif len(self._now.keys) < count:
             self._now = memory(len(self._verdicts))
-        overlapping, undecided, searches = settle(
-            pairs, placement, self._margin, self._hulls, self._last, self._remembered, self._now, self._verdicts
-        )
+        parts = self._threads.parts(count, FEWEST_SHARED)
+        if len(parts) == 1:
+            overlapping, undecided, searches = settle(
+                pairs, placement, self._margin, self._hulls, self._last, self._remembered, self._now, self._verdicts
+            )
+        else:
+            found = self._threads.each(lambda begin, end: self._part(pairs[begin:end], begin, placement), parts)
+            overlapping, undecided, searches = (sum(counts) for counts in zip(*found, strict=True))
         self._last, self._now, self._remembered = self._now, self._last, count
         self.searches += searches
         return self._verdicts[:count], overlapping, undecided
+
+    def _part(self, pairs: Pairs, begin: int, placement: Placement) -> tuple[int, int, int]:
+        """Settle those pairs of a frame that begin at a place in it; what is known of earlier ones is passed over."""
+        keys = self._last.keys[: self._remembered]
+        known = int(np.searchsorted(keys, pairs[0, 0] << 32 | pairs[0, 1]))
+        last, now = self._last.since(known), self._now.since(begin)
+        left = self._remembered - known
+        return settle(pairs, placement, self._margin, self._hulls, last, left, now, self._verdicts[begin:])
 
 
 def memory(room: int) -> Memory:

@@ -20,12 +20,16 @@ from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
 from harness.narrowphase.triangle_tree import triangle_tree
 from harness.narrowphase.verdicts import PairVerdict, PairVerdicts
 from harness.scene.mesh import Mesh
+from harness.threads import Threads
 
 # How many levels above the triangles that crossed the search starts, and for how many steps it looks there and from
 # the root. With this start it takes a third less time than without.
 LEVELS_UP = 3
 NEARBY_STEPS = 100
 STEPS = 20_000
+
+FEWEST_SHARED = 64
+"""Pairs that are worth handing over to another thread."""
 
 
 class Crossings(NamedTuple):
@@ -40,6 +44,10 @@ class Crossings(NamedTuple):
     keys: Ints
     leaves: Ints
 
+    def since(self, place: int) -> Crossings:
+        """Those of the pairs from a place on; the same arrays."""
+        return Crossings(self.keys[place:], self.leaves[place:])
+
 
 class MeshPairs:
     """Verdicts on pairs of bodies with these surfaces, in any sizes.
@@ -48,9 +56,11 @@ class MeshPairs:
     ----------
     meshes : that there are
     mesh_of : (n,) int array, the number of each body's mesh
+    threads : that share out the pairs of a frame
     """
 
-    def __init__(self, meshes: Sequence[Mesh], mesh_of: Ints) -> None:
+    def __init__(self, meshes: Sequence[Mesh], mesh_of: Ints, threads: Threads | None = None) -> None:
+        self._threads = threads or Threads()
         self._trees = trees_of_bodies([triangle_tree(mesh.vertices, mesh.faces) for mesh in meshes], mesh_of)
         self._stack = np.empty((DEPTH, 2), np.int64)
         self._last, self._now, self._remembered = crossings(0), crossings(0), 0
@@ -67,9 +77,37 @@ class MeshPairs:
             self._now = crossings(len(pairs) + len(pairs) // 2)
         verdicts = np.empty(len(pairs), np.int8)
         last = Crossings(self._last.keys[: self._remembered], self._last.leaves)
-        self._remembered = settle(pairs, placement, self._trees, self._stack, last, self._now, verdicts)
+        parts = self._threads.parts(len(pairs), FEWEST_SHARED)
+        if len(parts) == 1:
+            self._remembered = settle(pairs, placement, self._trees, self._stack, last, self._now, verdicts)
+        else:
+            self._remembered = self._shared(pairs, placement, last, verdicts, parts)
         self._last, self._now = self._now, self._last
         return verdicts
+
+    def _shared(
+        self,
+        pairs: Pairs,
+        placement: Placement,
+        last: Crossings,
+        verdicts: PairVerdicts,
+        parts: tuple[tuple[int, int], ...],
+    ) -> int:
+        """The same for each part of the pairs; how many cross, whose memory is then moved together."""
+        now = self._now
+
+        def part(begin: int, end: int) -> int:
+            some, stack = pairs[begin:end], np.empty_like(self._stack)
+            known = int(np.searchsorted(last.keys, some[0, 0] << 32 | some[0, 1]))
+            before, written = last.since(known), now.since(begin)
+            return settle(some, placement, self._trees, stack, before, written, verdicts[begin:end])
+
+        count = 0
+        for (begin, _), crossing in zip(parts, self._threads.each(part, parts), strict=True):
+            now.keys[count : count + crossing] = now.keys[begin : begin + crossing]
+            now.leaves[count : count + crossing] = now.leaves[begin : begin + crossing]
+            count += crossing
+        return count
 
 
 def crossings(room: int) -> Crossings:

@@ -125,5 +125,5 @@ def _hulls(meshes: Sequence[Mesh]) -> Search:
 
 
 def _surfaces(meshes: Sequence[Mesh]) -> Search:
-    shapes = [mesh_shape(mesh) for mesh in meshes]
+    shapes = [mesh_shape(mesh, followed=True) for mesh in meshes]
     return lambda i, j, one, other, end, gap: mesh_contacts(shapes[i], shapes[j], one, other, 0.0, end, gap)

@@ -22,6 +22,8 @@ METHOD = "method"
 BUSY_ABOVE = 1.2
 """Elapsed over CPU time from which on the machine was busy with something else."""
 
+_NOTHING = np.empty(0)
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredPoint:
@@ -63,8 +65,7 @@ class MeasuredPoint:
     def values(self, metric: str) -> npt.NDArray[np.float64]:
         """The metric of every good run that reports it, by repeat."""
         if metric not in self._values:
-            column = self.good[metric] if metric in self.good.columns else ()
-            values = np.asarray(column, dtype=float)
+            values = self._numbers.get(metric, _NOTHING)
             self._values[metric] = values[np.isfinite(values)]
         return self._values[metric]
 
@@ -112,6 +113,12 @@ class MeasuredPoint:
     def can_be_ranked(self) -> bool:
         """Whether nothing speaks against its answers."""
         return not self.is_wrong and not self.disputed
+
+    @cached_property
+    def _numbers(self) -> dict[str, npt.NDArray[np.float64]]:
+        """Every column of numbers of the good runs, taken from the table at once."""
+        numbers = self.good.select_dtypes("number")
+        return dict(zip(numbers.columns, numbers.to_numpy(np.float64, na_value=math.nan).T, strict=True))
 
     @cached_property
     def _by_place(self) -> dict[str, dict[tuple[int, str], float]]:

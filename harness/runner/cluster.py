@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import resource
 import signal
 import socket
 import threading
@@ -43,6 +44,7 @@ AHEAD = 2  # jobs handed out for each slot, so that no slot waits for the next
 DEATHS = 5  # workers that die with the same run, until the run is taken for the reason
 LOOK_EVERY = 5.0  # s between checks of which workers there are
 LOCAL = "local:"
+FILES, FILES_A_WORKER = 48, 16  # that the sweeping process opens
 
 
 class Cluster:
@@ -207,10 +209,12 @@ class Cluster:
                 return self._open.enter_context(Client(self._address, timeout=CONNECT_TIMEOUT))
             except (OSError, ValueError) as error:
                 raise InputError(f"{self._option}: no scheduler answers: {error}") from error
+        workers = int(self._address.removeprefix(LOCAL))
+        _require_open_files(FILES + FILES_A_WORKER * workers, self._option)
         try:
             with _inherited_by_children(signal.SIGINT, signal.SIG_IGN):  # the sweeping process answers Ctrl-C
                 cluster = LocalCluster(
-                    n_workers=int(self._address.removeprefix(LOCAL)),
+                    n_workers=workers,
                     threads_per_worker=1,
                     memory_limit=0,  # runs have limits of their own
                     dashboard_address=None,
@@ -220,6 +224,13 @@ class Cluster:
             raise InputError(f"{self._option}: the workers cannot be started: {error}") from error
         self._open.enter_context(cluster)
         return self._open.enter_context(Client(cluster))
+
+
+def _require_open_files(most: int, option: str) -> None:
+    """Refuse what Dask would try for ever: it waits for a connection that it may not accept."""
+    allowed, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if allowed != resource.RLIM_INFINITY and allowed < most:
+        raise InputError(f"{option}: this needs {most} open files, and a process may have {allowed} here (`ulimit -n`)")
 
 
 @contextmanager

@@ -116,17 +116,6 @@ def _require_finite_metrics(metrics: Mapping[str, float]) -> None:
         raise NotFiniteError(", ".join(wrong))
 
 
-def plan_of(point: Point, scene: Scene) -> Plan:
-    """The plan of a point, whose scene is at hand: the very object that a run of it loads.
-
-    Raises
-    ------
-    InputError
-        If the point forces a stage that cannot be forced, or its backend is missing.
-    """
-    return method_of_point(point).plan(scene, law_of(point, scene))
-
-
 def _peak_memory() -> float:
     """B, largest resident memory of this process so far."""
     unit = 1 if sys.platform == "darwin" else 1024

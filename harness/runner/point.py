@@ -5,6 +5,7 @@ from __future__ import annotations
 from harness.experiment.experiment import Point
 from harness.methods.method import Method
 from harness.methods.registry import method_of
+from harness.methods.stages import Plan
 from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
 from harness.vocabulary import ALGORITHMS, MethodName
@@ -17,8 +18,13 @@ def name_of(point: Point) -> MethodName:
 
 def method_of_point(point: Point) -> Method:
     """The method of a point, set as its engine says."""
+    engine = point.engine
     return method_of(
-        name_of(point), tolerance=point.engine.tolerance, within=point.engine.within, forced=point.engine.stages
+        name_of(point),
+        tolerance=engine.tolerance,
+        within=engine.within,
+        forced=engine.stages,
+        threads=engine.threads,
     )
 
 
@@ -29,6 +35,17 @@ def law_of(point: Point, scene: Scene) -> MotionLaw:
         times = tuple(scene.poses.time.tolist())
         return MotionLaw(times[-1], times[-1] / (len(times) - 1), motion.response, times=times)
     return MotionLaw(motion.duration, motion.dt, motion.response, motion.restitution)
+
+
+def plan_of(point: Point, scene: Scene) -> Plan:
+    """The plan of a point, whose scene is at hand: the very object that a run of it loads.
+
+    Raises
+    ------
+    InputError
+        If the point forces a stage that cannot be forced, or its backend is missing.
+    """
+    return method_of_point(point).plan(scene, law_of(point, scene))
 
 
 def is_stepped(point: Point) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
@@ -146,13 +147,15 @@ def _forced(experiment: Experiment, meshes: Opened) -> Iterator[Problem]:
     forcing = [point for point in experiment.points if point.engine.stages]
     if not forcing:
         return
-    from harness.runner.execute import plan_of  # half a second, which most experiments need not spend
+    from harness.runner.point import plan_of  # half a second, which most experiments need not spend
     from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import files_of
     from harness.scene.launch import PlacementError
 
     refused: set[tuple[str, str]] = set()
-    for point in forcing:
+    for declared in forcing:
+        # a plan does not look at the places, which take a compiler to find
+        point = replace(declared, scene=declared.scene.model_copy(update={"overlap": "allow"}))
         try:
             plan_of(point, build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory))
         except StageError as error:

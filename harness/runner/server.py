@@ -16,9 +16,9 @@ from multiprocessing.connection import Connection
 
 from harness.backends import registry
 from harness.backends.statement import ask_strangers_here
-from harness.process_limits import adopt_orphans, die_with_parent, memory_of_stranger_limited
+from harness.process_limits import adopt_orphans, die_with_parent, memory_of_stranger_limited, out_of_memory
 from harness.runner.isolation import run_isolated
-from harness.runner.task import Task
+from harness.runner.task import Report, Task
 from harness.runner.warm_up import warm_up
 from harness.scene.mesh import Mesh
 from harness.scene.recorded_poses import RecordedPoses
@@ -57,7 +57,14 @@ def _serve(channel: Connection) -> None:
         if isinstance(received, Mesh | RecordedPoses):
             held[received.identity] = received
             continue
-        _warm_up(received)
+        try:
+            _warm_up(received)
+        except (MemoryError, ImportError, OSError) as error:
+            if not out_of_memory(error):
+                raise
+            channel.send("warm")
+            channel.send(Report("memory", "to import and compile what it calls took more memory than there is"))
+            return  # what is imported in part only is of no use to the next run
         channel.send("warm")
         report = run_isolated(received, SceneFiles.of(tuple(held[identity] for identity in received.files)), channel)
         if report is None:

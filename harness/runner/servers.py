@@ -145,6 +145,7 @@ def task_of(
     `on_demand` are the metrics to measure that are measured on demand alone; without, those the experiment names.
     """
     files, limits = files_of(experiment, point, meshes), experiment.measure
+    pinned = pinned and point.engine.threads == 1
     on_demand = on_demand_of(experiment) if on_demand is None else on_demand
     task = Task(point, files.identities, limits.timeout, limits.memory, traced, pinned, recorded, on_demand)
     return task, files

@@ -6,6 +6,7 @@ import json
 import sqlite3
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 from harness.store.connection import as_input_error, open_for_reading
@@ -112,10 +113,28 @@ def history_of(path: str | Path) -> Iterator[History]:
         yield History(Path(path), connection)
 
 
+_SNAPSHOT: ContextVar[tuple[Path, sqlite3.Connection] | None] = ContextVar("snapshot", default=None)
+
+
+@contextmanager
+def snapshot(path: str | Path) -> Iterator[None]:
+    """All that is read of a results file inside is of one moment, and by one connection; errors as of `history_of`."""
+    with reading(path) as connection:
+        held = _SNAPSHOT.set((Path(path), connection))
+        try:
+            yield
+        finally:
+            _SNAPSHOT.reset(held)
+
+
 @contextmanager
 def reading(path: str | Path) -> Iterator[sqlite3.Connection]:
     """A connection that sees the results as they are at one moment; errors as of `history_of`."""
-    path = Path(path)
+    path, held = Path(path), _SNAPSHOT.get()
+    if held is not None and held[0] == path:
+        with as_input_error(path):
+            yield held[1]
+        return
     connection = open_for_reading(path)
     try:
         with as_input_error(path):

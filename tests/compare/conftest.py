@@ -70,6 +70,14 @@ DEFECTS = {
             open(os.environ["HARNESS_TEST_NOTE"], "w").write(str(started))
             return super().pairs(positions, quaternions)
     """,
+    "crashes-loading": """
+        def load(self, scene):
+            os.kill(os.getpid(), signal.SIGSEGV)
+    """,
+    "raises-loading": """
+        def load(self, scene):
+            raise RuntimeError("no luck")
+    """,
     "hangs-loading": """
         def load(self, scene):
             time.sleep(600)

@@ -33,7 +33,7 @@ def cross(a, b):
 def point_to_segment(x, a, b):
     along, to = minus(b, a), minus(x, a)
     length = dot(along, along)
-    part = min(max(dot(to, along) / length, Fraction(0)), Fraction(1)) if length else Fraction(0)
+    part = min(max(Fraction(dot(to, along), length), 0), 1) if length else 0
     rest = [t - part * s for t, s in zip(to, along, strict=True)]
     return dot(rest, rest)
 
@@ -46,7 +46,7 @@ def segments(p, q, r, s):
     uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
     determinant = uu * vv - uv * uv
     if determinant:
-        on_first, on_second = (uv * vw - vv * uw) / determinant, (uu * vw - uv * uw) / determinant
+        on_first, on_second = (Fraction(part, determinant) for part in (uv * vw - vv * uw, uu * vw - uv * uw))
         if 0 <= on_first <= 1 and 0 <= on_second <= 1:
             rest = [c + on_first * a - on_second * b for a, b, c in zip(u, v, w, strict=True)]
             best = min(best, dot(rest, rest))
@@ -58,7 +58,7 @@ def over(face, normal, x):
 
 
 def triangles(one, other):
-    """The squared distance of two triangles of fractions, (3, 3) lists."""
+    """The squared distance of two triangles of integers, (3, 3) lists."""
     best = min(segments(one[i - 1], one[i], other[j - 1], other[j]) for i in range(3) for j in range(3))
     for face, points in ((one, other), (other, one)):
         normal = cross(minus(face[1], face[0]), minus(face[2], face[0]))
@@ -67,11 +67,11 @@ def triangles(one, other):
             continue
         heights = [dot(minus(x, face[0]), normal) for x in points]
         for k in range(3):
-            foot = [c - heights[k] / area * n for c, n in zip(points[k], normal, strict=True)]
+            foot = [c - Fraction(heights[k], area) * n for c, n in zip(points[k], normal, strict=True)]
             if over(face, normal, foot):
-                best = min(best, heights[k] ** 2 / area)
+                best = min(best, Fraction(heights[k] ** 2, area))
             if heights[k - 1] * heights[k] < 0:
-                part = heights[k - 1] / (heights[k - 1] - heights[k])
+                part = Fraction(heights[k - 1], heights[k - 1] - heights[k])
                 through = [a + part * (b - a) for a, b in zip(points[k - 1], points[k], strict=True)]
                 if over(face, normal, through):
                     return Fraction(0)
@@ -97,8 +97,11 @@ def hulls(one, other):
     return min(triangles(p, q) for p in combinations(one, 3) for q in combinations(other, 3))
 
 
-def fractions(points):
-    return [[Fraction(part) for part in point] for point in points.tolist()]
+def exactly(distance, one, other):
+    """A squared distance of points that are doubles, asked of integers: they are quicker than fractions."""
+    scale = max(Fraction(part).denominator for part in (*one.flat, *other.flat))  # a power of two
+    whole = [[[int(Fraction(part) * scale) for part in point] for point in points.tolist()] for points in (one, other)]
+    return Fraction(distance(*whole)) / scale**2
 
 
 def pair_of_triangles(rng, form):
@@ -136,7 +139,7 @@ def wrong_pairs(count, seed=0):
         first, second = Placed(one, np.zeros(3), STRAIGHT), Placed(other, np.zeros(3), STRAIGHT)
         found = surface_distance(first, face, second, face)
         found.check(first, face, second, face)
-        if not found.lower == found.upper == triangles(fractions(one), fractions(other)):
+        if not found.lower == found.upper == exactly(triangles, one, other):
             wrong.append((k, form))
         if k % 10 == 0:
             one, other = rng.normal(size=(2, 4 + k % 3, 3)) if k % 20 else rng.integers(-2, 3, (2, 5, 3)).astype(float)
@@ -145,7 +148,7 @@ def wrong_pairs(count, seed=0):
             found = hull_distance(first, second)
             whole = np.arange(len(one))[None]
             found.check(first, whole, second, whole)
-            if not found.lower == found.upper == hulls(fractions(one), fractions(other)):
+            if not found.lower == found.upper == exactly(hulls, one, other):
                 wrong.append((k, "hull"))
     return wrong
 

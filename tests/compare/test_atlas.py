@@ -3,10 +3,12 @@
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from harness.cli.main import main
 from harness.compare import families
 from harness.compare.atlas import Cell, survey
 from harness.compare.budget import Budget
@@ -15,9 +17,16 @@ from harness.compare.judge import judge
 from harness.compare.minimise import minimise
 from harness.compare.outcome import Case
 from harness.compare.script import LONGEST, reproduces, script_of
+from harness.errors import InputError
+from harness.experiment.load import load_text
+from harness.scene.box import Box
+from harness.scene.recorded_poses import RecordedPoses
+from harness.scene.scene import Scene
 from harness.vocabulary import FAMILIES
 from tests.compare.liars import install
 from tests.conftest import cube_mesh
+
+EXPERIMENTS = Path(__file__).parents[2] / "experiments"
 
 
 def poses(family, shape="hull", count=24):
@@ -29,10 +38,61 @@ def poses(family, shape="hull", count=24):
 
 
 def test_every_family_of_the_vocabulary_has_its_poses_and_as_many_as_asked():
-    assert families._FAMILIES.keys() == FAMILIES.keys()
-    for family in FAMILIES:
+    assert families._FAMILIES.keys() | {"resting"} == FAMILIES.keys()
+    for family in families._FAMILIES:
         for shape in ("sphere", "hull", "mesh"):
             assert len(poses(family, shape, 5)) == 5
+
+
+def test_resting_bodies_are_asked_about_where_they_were_recorded():
+    places = np.array(
+        [[[0.0, 0, 0], [0.9, 0, 0], [5.0, 0, 0], [5.7, 0, 0]], [[0.0, 0, 0], [2.0, 0, 0], [5.0, 0, 0], [5.8, 0, 0]]]
+    )
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (2, 4, 1))
+    recorded = RecordedPoses("x.npz", np.array([0.0, 0.1]), places, turns, "")
+    bodies = recorded.at_start(np.ones(4), np.ones(4))
+    scene = Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 20.0)), mesh_of=np.zeros(4, int), poses=recorded)
+    (found,) = families.resting_poses(scene, 10)
+    seen = [(pose.name, pose.positions[:, 0].tolist()) for pose in found.poses(found.scene)]
+    assert seen == [
+        ("bodies 0 and 1 at 0 s", [0.0, 0.9]),
+        ("bodies 2 and 3 at 0 s", [5.0, 5.7]),
+        ("bodies 2 and 3 at 0.1 s", [5.0, 5.8]),
+    ]
+    (fewer,) = families.resting_poses(scene, 2)
+    assert [pose.name for pose in fewer.poses(fewer.scene)] == [seen[0][0], seen[1][0]]
+    (without,) = families.resting_poses(replace(scene, ignored=np.array([[2, 3]])), 10)
+    assert [pose.name for pose in without.poses(without.scene)] == [seen[0][0]]
+
+
+def test_bodies_of_two_meshes_or_sizes_are_asked_about_together_with_their_like():
+    places = np.arange(4.0)[None, :, None] * [0.5, 0, 0]
+    recorded = RecordedPoses("x.npz", np.zeros(1), places, np.tile([1.0, 0, 0, 0], (1, 4, 1)), "")
+    bodies = recorded.at_start(np.array([1.0, 1.0, 2.0, 1.0]), np.ones(4))
+    meshes = cube_mesh(), replace(cube_mesh(), name="other")
+    scene = Scene("mesh", meshes, bodies, Box(np.full(3, 20.0)), mesh_of=np.array([0, 0, 0, 1]), poses=recorded)
+    found = list(families.resting_poses(scene, 100))
+    assert sum(len(one.poses(one.scene)) for one in found) == 5
+    assert sorted((len(one.scene.meshes), *one.scene.bodies.sizes.tolist()) for one in found) == [
+        (1, 1.0, 1.0), (1, 1.0, 2.0), (2, 1.0, 1.0), (2, 2.0, 1.0),
+    ]  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_stack_that_was_recorded_is_judged_of_every_engine(capsys):
+    assert (
+        main(["compare", str(EXPERIMENTS / "atlas" / "resting.yaml"), "--backends", "fcl,pybullet", "--every", "7"])
+        == 0
+    )
+    told = capsys.readouterr().out
+    assert "fcl: resting, hull of cube.ply: 6 verdicts, none wrong" in told
+    assert "own: distance, resting, mesh of cube.ply: 6 verdicts, none wrong" in told
+
+
+def test_the_family_of_resting_bodies_needs_recorded_poses():
+    text = "title: t\nscene: {mesh: cube.ply, count: 2, box: [6, 6, 6]}\nmeasure: {families: [resting]}\n"
+    with pytest.raises(InputError, match=r"x\.yaml:3:11: .*motion\.poses names none"):
+        load_text(text, "x.yaml")
 
 
 def test_poses_of_a_family_are_the_same_each_time():

@@ -29,6 +29,20 @@ def test_what_a_pause_takes_does_not_count():
     assert not budget.spent
 
 
+def test_a_question_takes_no_more_than_its_share_and_leaves_the_rest_to_the_next():
+    budget = Budget(3600.0)
+    with budget.share(3600 * 1000):  # a millisecond
+        time.sleep(0.01)
+        assert budget.spent
+        assert budget.why == "its share of 3600 s was spent"
+        with budget.paused():
+            time.sleep(0.02)
+    assert not budget.spent
+    with budget.share(1):
+        assert not budget.spent
+        assert budget.why == "3600 s were spent"
+
+
 def test_json_says_what_was_left_out(tmp_path, capsys):
     code, document = compared(capsys, written(tmp_path, "sphere"), "--budget", "1e-6", "--every", "2")
     assert code == 0

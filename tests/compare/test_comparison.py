@@ -113,3 +113,15 @@ def test_a_backend_that_hangs_over_its_first_scene_is_not_asked_about_others(def
         "2 s, and is not asked again"
     ]
     assert said == ["fcl, hangs-loading: 3 bodies, shape sphere"]
+
+
+@pytest.mark.parametrize(("name", "how"), [("crashes-loading", "SIGSEGV"), ("raises-loading", "no luck")])
+def test_a_backend_that_fails_over_every_scene_is_named_once_and_the_comparison_fails(
+    name, how, defective, tmp_path, capsys
+):
+    names = f"fcl,{defective(name)},pybullet"
+    arguments = ["--backends", names, "--set", "count=3", "--set", "dt=1/2", "--every", "50"]
+    code, document = compared(capsys, written(tmp_path, "sphere"), *arguments)
+    assert code == 1
+    assert [(case["wrong"], how in str(case["certificate"])) for case in document["cases"]] == [(name, True)]
+    assert ["fcl", "pybullet"] in [pair["backends"] for pair in document["pairs"] if pair["verdicts"]]

@@ -22,7 +22,7 @@ def the_tally(found):
     return tally
 
 
-@pytest.mark.parametrize("shape", ["sphere", "hull"])
+@pytest.mark.parametrize("shape", ["sphere", pytest.param("hull", marks=pytest.mark.slow)])
 def test_every_contact_of_the_predictive_method_is_proven(shape):
     tally = the_tally(audited(shape))
     assert tally.verdicts > 40

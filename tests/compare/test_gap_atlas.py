@@ -18,7 +18,7 @@ from tests.conftest import cube_mesh
 FAMILIES = ["random", "grazing", "shared"]
 
 
-def found(query, shape, engines, families=FAMILIES, count=8):
+def found(query, shape, engines, families=FAMILIES, count=4):
     made = survey(shape, cube_mesh(), families, count, engines, Budget(), made=SURVEYS[query])
     json.dumps([cell_row(cell) for cell in made.cells], allow_nan=False)  # as `--json` and the database have them
     return {(cell.engine, cell.family): (cell.verdicts, cell.beyond) for cell in made.cells}

@@ -79,6 +79,7 @@ def test_convex_surfaces_cross_where_their_hulls_touch():
     assert 5 < sum(verdicts) < 40
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 def test_the_short_verdict_is_that_of_the_judge(shape):
     for pose_set in list(hard_poses(shape, (cube_mesh(),), 31))[::3]:

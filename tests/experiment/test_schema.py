@@ -48,6 +48,7 @@ def test_everything_but_title_bodies_box_and_mesh_has_the_default_of_the_contrac
         "query": "collision",
         "within": None,
         "tolerance": 1e-6,
+        "threads": 1,
         "stages": {},
     }
     measure = MeasureSpec(repeats=5, timeout=120, memory=4 * 1024**3, tier="default", max_runs=10_000, reference=None)

@@ -218,6 +218,7 @@ def test_a_geometric_mean_needs_positive_numbers(values: list[float]) -> None:
         geometric_mean(values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scales", "xs"),
     [

@@ -27,6 +27,7 @@ def noise(rng, kind, sweeps):
     return values * rng.choice(sizes, POINTS)[:, None]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["even", "uneven", "outliers"])
 def test_where_nothing_changes_fewer_than_one_history_in_twenty_names_a_step(kind):
     rng = np.random.default_rng(19)

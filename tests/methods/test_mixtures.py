@@ -80,6 +80,7 @@ def test_a_flight_of_several_meshes_is_the_same_by_every_method(shape):
     assert digests["fcl"][1] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_hits_of_several_meshes_are_predicted_where_frames_see_them(shape):
     scene, law = mixture(shape, 6, count=14), MotionLaw(1.2, 2e-3, "none")

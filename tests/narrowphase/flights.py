@@ -15,7 +15,7 @@ STRAIGHT = (1.0, 0.0, 0.0, 0.0)
 
 @cache
 def shape_named(name):
-    return mesh_shape(cube_mesh() if name == "cube" else mesh_named(name))
+    return mesh_shape(cube_mesh() if name == "cube" else mesh_named(name), followed=True)
 
 
 def body(position=(0, 0, 0), velocity=(0, 0, 0), quaternion=STRAIGHT, spin=(0, 0, 0), size=1.0):

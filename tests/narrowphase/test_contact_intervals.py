@@ -84,6 +84,7 @@ def test_surfaces_touch_at_every_instant_of_a_contact_and_at_none_between(seed, 
             assert inside or not truth.touch(time)
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(st.integers(0, 10**6), st.sampled_from(["cube", *MESHES]), st.sampled_from([0.0, 3.0, 10.0]))
 def test_hulls_overlap_at_every_instant_of_a_contact_and_at_none_between(seed, name, spin):

@@ -8,10 +8,12 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from harness.narrowphase.advancement import time_of_impact
-from harness.narrowphase.free_flight import attitude, place
+from harness.narrowphase.clearance_field import no_field
+from harness.narrowphase.free_flight import attitude, place, seen_at
 from harness.narrowphase.gjk import COLD_START
-from harness.narrowphase.mesh_advancement import MESH_COLD_START, MeshShape, time_of_mesh_impact
+from harness.narrowphase.mesh_advancement import MESH_COLD_START, MeshShape, first_touch, time_of_mesh_impact
 from harness.narrowphase.support import support_map
+from harness.narrowphase.tree_pairs import NO_NODES, Trees
 from harness.narrowphase.triangle_tree import triangle_tree
 from harness.narrowphase.verdicts import SearchVerdict
 from tests.narrowphase.flights import STRAIGHT, Truth, body, encounter, shape_named
@@ -66,7 +68,9 @@ def test_icospheres_converge_to_the_sphere_with_the_square_of_their_edges():
     for level in (1, 2, 3, 4):
         sphere = trimesh.creation.icosphere(subdivisions=level, radius=0.5)
         vertices = np.array(sphere.vertices)
-        shape = MeshShape(support_map(vertices), triangle_tree(vertices, np.array(sphere.faces, np.int32)), 0.5)
+        shape = MeshShape(
+            support_map(vertices), triangle_tree(vertices, np.array(sphere.faces, np.int32)), 0.5, no_field()
+        )
         found = []
         for q, p in zip(turns(np.random.default_rng(0), 20), turns(np.random.default_rng(1), 20), strict=True):
             a, b_ = body(quaternion=q, spin=(0.5, 1, 2)), body(offset, velocity, quaternion=p, spin=(1, -2, 0))
@@ -151,3 +155,17 @@ def test_late_times_lose_no_more_digits_than_the_clock_has():
     found = impact(*earlier, begin=late, tolerance=1e-9)
     assert found.verdict == SearchVerdict.FOUND
     assert found.time - late == pytest.approx(early.time, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["pumpkin-1753.ply", "package:pybullet_data/duck.obj"])
+@pytest.mark.parametrize("spin", [0.0, 3.0, 10.0])
+def test_windows_of_few_triangles_find_the_impact_that_a_search_through_the_trees_finds(name, spin):
+    shape, tolerance = shape_named(name), 1e-9
+    for seed in range(15):
+        a, b = encounter(seed, spin, apart=(1.0, 1.5))
+        found = impact(a, b, name, end=2.0, tolerance=tolerance)
+        one, other = seen_at(a, b, 0.0)
+        through = first_touch(Trees(shape.tree, shape.tree), one, other, 0.0, 2.0, tolerance, NO_NODES)
+        assert found.verdict == through.verdict
+        if found.verdict == SearchVerdict.FOUND:
+            assert found.time == pytest.approx(through.time, abs=1e-11)

@@ -26,6 +26,7 @@ def exact_gap(scene, trajectory, i, j):
     return surface_distance(one, faces, other, faces).gap
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_bounds_on_gaps_hold_what_exact_arithmetic_finds(shape):
     scene = random_scene(shape, 8, 3.0, 5)

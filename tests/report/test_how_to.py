@@ -2,15 +2,20 @@
 
 import argparse
 import re
+import shutil
 from html import unescape
 from importlib import import_module
+from pathlib import Path
 
 import pytest
+import trimesh
 
-from harness.cli.main import COMMANDS
+from harness.cli.main import COMMANDS, main
 from harness.report.page import pages_of
 from harness.report.results import Results
 from tests.test_readme import commands
+
+QUICKSTART = Path(__file__).parents[2] / "experiments" / "quickstart.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +40,19 @@ def test_every_line_that_is_typed_is_one_its_command_takes(page):
             parser = argparse.ArgumentParser(exit_on_error=False)
             import_module(f"harness.cli.{name}").add_arguments(parser)
             parser.parse_args(words)
+
+
+def test_the_lines_about_meshes_and_sweeps_run(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    trimesh.creation.icosphere(subdivisions=3).export("duck.obj")
+    Path("experiments").mkdir()
+    shutil.copy(QUICKSTART, "experiments")
+    lines = [words for text in snippets(page) for words in commands(text) if words[0] in ("mesh", "sweep")]
+    assert len(lines) > 8
+    for words in lines:
+        flown = words[0] == "sweep" and "--cluster" not in words and "--dry-run" not in words
+        if "--cluster" not in words:
+            assert main([*words, "--dry-run"] if flown else words) == 0, words
 
 
 def test_what_is_said_in_python_is_python(page):

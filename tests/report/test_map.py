@@ -92,6 +92,7 @@ def test_every_algorithm_has_a_colour_and_a_letter_of_its_own():
     assert len({letter(method) for method in methods}) == len(methods)
 
 
+@pytest.mark.slow
 def test_figures_can_be_had_as_pdf_and_png_with_the_same_bytes_every_time(tmp_path):
     path = write(tmp_path / "results.db", [invented()])
     files, again = (dict(render(path, ("pdf", "png"))) for _ in range(2))
@@ -103,6 +104,7 @@ def test_figures_can_be_had_as_pdf_and_png_with_the_same_bytes_every_time(tmp_pa
     assert {name: text for name, text in files.items() if isinstance(text, str)} == dict(render(path))
 
 
+@pytest.mark.slow
 def test_a_figure_in_another_format_has_the_light_colours(tmp_path):
     image = dict(render(write(tmp_path / "results.db", [invented()]), ("png",)))["map.png"]
     colours = {pixel for _, pixel in Image.open(BytesIO(image)).convert("RGB").getcolors(2**24)}

@@ -67,6 +67,7 @@ def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
         assert set(links) <= pages.keys()
 
 
+@pytest.mark.slow
 def test_the_overview_shows_few_findings_and_says_where_the_others_are(tmp_path):
     many = [Invented(f"x{place}", f"X{place}", {"count": [10, 40, 160]}, {}) for place in range(12)]
     overview = dict(render(write(tmp_path / "x.db", many)))["index.html"]
@@ -74,6 +75,7 @@ def test_the_overview_shows_few_findings_and_says_where_the_others_are(tmp_path)
     assert "4 more stand under their" in overview
 
 
+@pytest.mark.slow
 def test_pages_are_well_formed_with_unique_ids_that_references_meet(pages):
     for name, html in html_of(pages).items():
         outline = Outline()
@@ -348,6 +350,7 @@ def test_the_findings_come_as_markdown_with_a_row_an_experiment(database, pages)
     assert not re.search(r"</?(?!sup)\w+>", pages["findings.md"])
 
 
+@pytest.mark.slow
 def test_what_happens_in_a_scene_has_no_best(report_of):
     def luckier(parameters, repeat, metrics):
         metrics["pair_hits"] *= 4 if parameters["backend"] == "pybullet" else 1

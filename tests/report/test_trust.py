@@ -12,6 +12,7 @@ def test_every_line_has_its_rate():
     assert list(STORED) == list(LINES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", list(LINES))
 def test_a_short_form_made_anew_is_compatible_with_what_is_stored(what):
     """The first trials are the same ones, so what came out in them is no more than what came out in all."""

@@ -24,7 +24,7 @@ import yaml
 from harness.errors import InputError
 from harness.experiment.load import load_text
 from harness.measure.verdicts import judge
-from harness.runner.execute import plan_of
+from harness.runner.point import plan_of
 from harness.runner.scene_of_point import build_scene
 from harness.runner.servers import Servers, files_of
 from harness.runner.sweep import run

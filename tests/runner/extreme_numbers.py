@@ -25,7 +25,7 @@ from harness.child_process import Channel, Child
 from harness.errors import InputError
 from harness.experiment.load import load_text
 from harness.process_limits import limit
-from harness.runner.execute import plan_of
+from harness.runner.point import plan_of
 from harness.runner.scene_of_point import SceneSizeError, build_scene
 from harness.runner.servers import Servers, files_of, task_of
 from harness.scene.launch import PlacementError

@@ -98,6 +98,17 @@ ENVIRONMENTS = {
     "PYTHONWARNINGS=error": Environment({"PYTHONWARNINGS": "error"}),
     "40 columns": Environment({"COLUMNS": "40"}),
     "1 column": Environment({"COLUMNS": "1"}),
+    "LANG=C, PYTHONOPTIMIZE=1, PYTHONWARNINGS=error and 40 columns": Environment(
+        {
+            "LANG": "C",
+            "LC_ALL": "C",
+            "PYTHONUTF8": "0",
+            "PYTHONCOERCECLOCALE": "0",
+            "PYTHONOPTIMIZE": "1",
+            "PYTHONWARNINGS": "error",
+            "COLUMNS": "40",
+        }
+    ),
     "files of 0 bytes": Environment(limits={resource.RLIMIT_FSIZE: 0}, may_fail=True),
     "files of 8 KiB": Environment(limits={resource.RLIMIT_FSIZE: 8 << 10}, may_fail=True),
     "files of 60 KiB": Environment(limits={resource.RLIMIT_FSIZE: 60 << 10}, may_fail=True),

@@ -186,6 +186,12 @@ def test_workers_that_cannot_be_started_are_a_sentence(small, capsys, monkeypatc
     assert "local:2: the workers cannot be started: Nanny failed to start." in capsys.readouterr().err
 
 
+def test_too_few_open_files_for_dask_are_a_sentence(small, capsys, monkeypatch):
+    monkeypatch.setattr("harness.runner.cluster.resource.getrlimit", lambda _: (20, 20))
+    assert main(["sweep", "small.yaml", "--jobs", "2"]) == 2
+    assert "this needs 80 open files, and a process may have 20 here (`ulimit -n`)" in capsys.readouterr().err
+
+
 def exit_code(words):
     try:
         return main(words)

@@ -5,7 +5,7 @@ import pytest
 from tests.runner.odd_environments import COMMANDS, attempt, folder_for, wrong
 
 SHORT_FORM = (
-    "HOME that is a file", "none of them", "LANG=C", "PYTHONOPTIMIZE=1", "PYTHONWARNINGS=error", "40 columns",
+    "HOME that is a file", "none of them", "LANG=C, PYTHONOPTIMIZE=1, PYTHONWARNINGS=error and 40 columns",
     "files of 8 KiB", "standard output closed", "a full disk behind standard output",
 )  # fmt: skip
 

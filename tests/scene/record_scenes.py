@@ -1,8 +1,11 @@
 """Records the motion of `experiments/recorded/`: a bin that pybullet fills, and an arm that sweeps through obstacles.
 
+Also the stacks of `experiments/atlas/resting.yaml`.
+
     python -m tests.scene.record_scenes FOLDER
 
-writes bin.npz, bin-at-rest.npz, bin.off, arm.npz, and the bodies of both as the YAML files list them.
+writes bin.npz, bin-at-rest.npz, bin.off, arm.npz, cubes.npz and balls.npz, and the bodies of the bin and of the arm
+as the YAML files list them.
 """
 
 import json
@@ -47,6 +50,9 @@ OBSTACLES = [
     ("random_urdfs/000/000.obj", 0.3, (0.4, -0.4, 0.9)),
 ]
 ARM_FRAMES, ARM_SECONDS = 240, 8.0
+
+MESHES = Path(__file__).parents[2] / "meshes"
+STACKED, STACK_FRAMES = 24, 4
 
 STILL = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
@@ -138,6 +144,43 @@ def sweep_arm():
     return time, poses
 
 
+def stack(mesh):
+    """Bodies of a mesh, 1 m across, dropped onto each other in a pit until they rest; the poses of the last frames.
+
+    Cubes fall in towers, each turned a little and not quite straight; round bodies find their own places.
+    """
+    rng = np.random.default_rng(SEED)
+    pybullet.connect(pybullet.DIRECT)
+    pybullet.setGravity(0, 0, -9.81)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP, numSolverIterations=100)
+    width = 2.4
+    for at, half in (
+        ((0, 0, -0.5), (5, 5, 0.5)),
+        *(((side * (width / 2 + 0.5), 0, 5), (0.5, 5, 5)) for side in (-1, 1)),
+        *(((0, side * (width / 2 + 0.5), 5), (5, 0.5, 5)) for side in (-1, 1)),
+    ):
+        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half)
+        pybullet.createMultiBody(0, box, basePosition=at)
+    read = read_mesh(MESHES / mesh)
+    shape = pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=(read.vertices / read.diameter).tolist())
+    bodies = []
+    for number in range(STACKED):
+        layer, place = divmod(number, 4)
+        x, y = 1.2 * (place % 2) - 0.6, 1.2 * (place // 2) - 0.6
+        yaw = rng.uniform(-0.1, 0.1) + 0.3 * place
+        at = [x + rng.uniform(-0.05, 0.05), y + rng.uniform(-0.05, 0.05), 0.35 + 0.6 * layer]
+        turn = pybullet.getQuaternionFromEuler([0, 0, yaw])
+        bodies.append(pybullet.createMultiBody(0.2, shape, basePosition=at, baseOrientation=turn))
+        pybullet.changeDynamics(bodies[-1], -1, lateralFriction=0.8, **FRICTION)
+    poses = []
+    for _ in range(FRAMES + STACK_FRAMES):
+        poses.append([pybullet.getBasePositionAndOrientation(body) for body in bodies])
+        for _ in range(STEPS_A_FRAME):
+            pybullet.stepSimulation()
+    pybullet.disconnect()
+    return np.arange(STACK_FRAMES) * STEP * STEPS_A_FRAME, poses[-STACK_FRAMES:]
+
+
 def save(path, time, poses):
     """An .npz as experiments read it; a quaternion of pybullet is x y z w."""
     positions = np.array([[at for at, _ in frame] for frame in poses], np.float32)
@@ -155,6 +198,8 @@ def main(folder):
     save(folder / "bin.npz", time, poses)
     save(folder / "bin-at-rest.npz", time[-REST:], poses[-REST:])
     save(folder / "arm.npz", *sweep_arm())
+    save(folder / "cubes.npz", *stack("cube.ply"))
+    save(folder / "balls.npz", *stack("icosphere-1280.ply"))
     names = [list(SIZES)[number % len(SIZES)] for number in range(BODIES)]
     of_bin = [("bin.off", "native"), *((package(name), SIZES[name]) for name in names)]
     of_arm = [(package(name), "native") for name in LINKS] + [(package(name), size) for name, size, _ in OBSTACLES]

@@ -35,6 +35,7 @@ def assert_minimal(points, centre, radius):
 coordinates = st.floats(-1, 1).map(lambda x: round(x, 9))
 
 
+@pytest.mark.slow
 @given(hnp.arrays(np.float64, st.tuples(st.integers(2, 7), st.just(3)), elements=coordinates))
 @settings(max_examples=60, deadline=None)
 def test_no_sphere_through_a_few_of_the_points_is_smaller(points):

@@ -47,6 +47,7 @@ def test_another_content_and_another_name_are_other_meshes(cube):
     assert key_of(cube) not in (None, key)
 
 
+@pytest.mark.slow
 def test_what_is_refused_is_not_kept_and_a_file_cut_short_is_read_again(cube, tmp_path):
     bad = tmp_path / "bad.obj"
     bad.write_text("nonsense")
@@ -57,6 +58,7 @@ def test_what_is_refused_is_not_kept_and_a_file_cut_short_is_read_again(cube, tm
     assert file.stat().st_size > 500
 
 
+@pytest.mark.slow
 def test_without_a_place_for_it_a_mesh_is_read_each_time(cube, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))

@@ -164,28 +164,32 @@ def spoiled(name, arrays):
             file.truncate(2**30)
 
 
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("nan", r"positions\[2\] has a value that is not finite"),
-        ("shape", r"quaternions must have the shape \(5, 3, 4\)"),
-        ("times", r"times must grow; time\[3\] is"),
-        ("length", r"quaternions\[1, 2\] has length 1.00001"),
-        ("lacking", r"there is no array time \(f,\) in it; it has positions, quaternions"),
-        ("pickled", "it holds pickled Python objects, which are not read"),
-        ("truncated", "this is no .npz file, or it is cut short"),
-        ("text", "this is no .npz file"),
-        ("large", "1024 MiB are too large"),
-        ("count", "poses.npz has poses of 3 bodies, not 4"),
-    ],
-)
+WRONG = {
+    "nan": r"positions\[2\] has a value that is not finite",
+    "shape": r"quaternions must have the shape \(5, 3, 4\)",
+    "times": r"times must grow; time\[3\] is",
+    "length": r"quaternions\[1, 2\] has length 1.00001",
+    "lacking": r"there is no array time \(f,\) in it; it has positions, quaternions",
+    "pickled": "it holds pickled Python objects, which are not read",
+    "truncated": "this is no .npz file, or it is cut short",
+    "text": "this is no .npz file",
+    "large": "1024 MiB are too large",
+    "count": "count.npz has poses of 3 bodies, not 4",
+}
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_what_is_wrong_with_a_file_is_said_at_the_line_that_names_it(name, said, capsys):
-    spoiled(name, poses())
-    count = 4 if name == "count" else 3
-    Path("x.yaml").write_text(f"title: t\nscene: {{shape: sphere, count: {count}}}\nmotion:\n  poses: poses.npz\n")
-    assert main(["validate", "x.yaml"]) == 2
-    assert re.search(rf"^x.yaml:4:10: .*{said}", capsys.readouterr().err, re.MULTILINE)
+def test_what_is_wrong_with_a_file_is_said_at_the_line_that_names_it(capsys):
+    for name in WRONG:
+        spoiled(name, poses())
+        Path("poses.npz").rename(f"{name}.npz")
+        count = 4 if name == "count" else 3
+        text = f"title: t\nscene: {{shape: sphere, count: {count}}}\nmotion:\n  poses: {name}.npz\n"
+        Path(f"{name}.yaml").write_text(text)
+    assert main(["validate", "."]) == 2
+    errors = capsys.readouterr().err
+    for name, said in WRONG.items():
+        assert re.search(rf"^{name}.yaml:4:10: .*{said}", errors, re.MULTILINE), name
 
 
 @pytest.mark.parametrize(

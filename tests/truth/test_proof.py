@@ -45,11 +45,11 @@ def turning_pair(solid):
 
 CLOSED_FORMS = [
     sphere_pair(),
-    face_pair(MESH),
     face_pair(HULL),
-    face_pair(MESH, spin=7.0),
-    turning_pair(MESH),
-    turning_pair(HULL),
+    *(
+        pytest.param(*pair, marks=pytest.mark.slow)
+        for pair in (face_pair(MESH), face_pair(MESH, spin=7.0), turning_pair(MESH), turning_pair(HULL))
+    ),
 ]
 
 
@@ -69,6 +69,7 @@ def test_bounds_that_are_out_of_order_too_wide_or_say_never_of_a_part_are_refuse
     assert reason(first, second, 1.0, inf, window=1.0) == ""
 
 
+@pytest.mark.slow
 def test_what_passes_at_a_thousandth_of_a_size_is_proven_to():
     one = flight(MESH, spin=(0, 0, 3.0))  # its edges reach sqrt(1/2) from the axis
     for gap, proven in ((1e-3, True), (1e-6, True), (-1e-6, False)):
@@ -148,6 +149,7 @@ def pumpkins():
     return mesh, cases, Solids({"pumpkin": Surface(mesh.vertices, mesh.faces)}, [("pumpkin", "mesh")])
 
 
+@pytest.mark.slow
 def test_the_engines_times_of_spinning_pumpkins_are_proven_and_shifted_ones_are_refused(pumpkins):
     _, cases, solids = pumpkins
     touch = np.flatnonzero(np.isfinite(cases.upper))

@@ -139,6 +139,7 @@ def test_what_cannot_be_asked_is_a_sentence_and_exit_code_2(folder, capsys, argu
     assert streams.out == ""
 
 
+@pytest.mark.slow
 def test_published_rows_are_answered_right_by_the_engine(capsys):
     assert main(["truth", "ask", str(PUBLISHED), "--every", "250", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["backends"][0]["families"]
@@ -146,6 +147,7 @@ def test_published_rows_are_answered_right_by_the_engine(capsys):
     assert len(found) == 11
 
 
+@pytest.mark.slow
 def test_slow_approaches_are_answered_no_farther_apart_than_the_tolerance(capsys):
     # a gap of 1.6e-12 of a size, as if the tolerance were that, would be 7.7e-9 s before the touch
     assert main(["truth", "ask", str(PUBLISHED), "--families", "resting", "--json"]) == 0

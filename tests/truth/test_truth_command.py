@@ -70,6 +70,7 @@ def test_a_bracket_moved_by_a_millionth_of_a_second_is_refused_with_its_line(mad
     assert out.endswith("11 of 12 cases are proven\n")
 
 
+@pytest.mark.slow
 def test_a_body_that_starts_elsewhere_or_a_touch_said_to_be_none_is_refused(made, tmp_path):
     rows = rows_of(made)
     place = first_touching(rows)

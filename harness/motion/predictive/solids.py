@@ -18,6 +18,7 @@ from harness.motion.predictive.double_double import DOUBLE_DOUBLE, angle_after, 
 from harness.motion.predictive.state import Record, Records, World
 from harness.motion.predictive.windows import Windows
 from harness.narrowphase.body_shapes import Shapes, shape_of, shapes_of_bodies
+from harness.narrowphase.clearance_field import no_field
 from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import support_map
@@ -55,7 +56,7 @@ class Form:
 def _shape(mesh: Mesh, *, surface: bool) -> MeshShape:
     """A mesh of diameter 1, of which the surface is one triangle where it is not searched."""
     tree = triangle_tree(mesh.vertices, mesh.faces if surface else mesh.faces[:1])
-    return MeshShape(support_map(mesh.hull.vertices), tree, 0.5)
+    return MeshShape(support_map(mesh.hull.vertices), tree, 0.5, no_field())
 
 
 def needs_its_surface(scene: Scene) -> bool:

@@ -12,9 +12,10 @@ def failures_table(arrangement: Arrangement) -> Table | None:
     rows = []
     for series in arrangement.series:
         for point, x in zip(series.points, series.x, strict=True):
-            bad = point.runs[point.runs["status"] != "ok"]
-            if bad.empty:
+            ended_otherwise = point.runs["status"] != "ok"
+            if not ended_otherwise.any():
                 continue
+            bad = point.runs.loc[ended_otherwise, ["status", "reason", "repeat"]]
             for (status, reason), group in bad.groupby(["status", "reason"], dropna=False, sort=True):
                 text = str(reason) if isinstance(reason, str) and reason else "no reason was recorded"
                 repeats = ", ".join(str(int(repeat)) for repeat in sorted(group["repeat"]))

@@ -1,0 +1,52 @@
+"""Threads that share out the items of one frame, where a run asks for several cores.
+
+Every item is worked on by itself, so that who does which changes no result. Kernels let other threads run meanwhile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+Result = TypeVar("Result")
+
+# Parts a thread: pairs differ in what they cost, and with one part each the last thread would be waited for.
+_PARTS = 2
+
+
+class Threads:
+    """So many threads, started with the first work that is large enough to be shared.
+
+    Parameters
+    ----------
+    count : 1 for the caller's alone
+
+    >>> Threads(1).parts(1000, 10)
+    ((0, 1000),)
+    >>> Threads(2).parts(100, 32)
+    ((0, 33), (33, 66), (66, 100))
+    """
+
+    def __init__(self, count: int = 1) -> None:
+        self.count = count
+        self._pool: ThreadPoolExecutor | None = None
+
+    def parts(self, items: int, fewest: int) -> tuple[tuple[int, int], ...]:
+        """Where each part of so many items begins and ends; one part where there is nothing to share.
+
+        Parameters
+        ----------
+        items : how many there are
+        fewest : in a part; to hand over fewer, at some 50 us a part, would take longer than to do them
+        """
+        parts = 1 if self.count == 1 else max(1, min(_PARTS * self.count, items // fewest))
+        return tuple((items * part // parts, items * (part + 1) // parts) for part in range(parts))
+
+    def each(self, work: Callable[[int, int], Result], parts: tuple[tuple[int, int], ...]) -> list[Result]:
+        """What comes of every part, in their order."""
+        if len(parts) == 1:
+            return [work(*parts[0])]
+        if self._pool is None:
+            self._pool = ThreadPoolExecutor(self.count)
+        return list(self._pool.map(lambda part: work(*part), parts))

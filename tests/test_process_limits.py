@@ -1,0 +1,31 @@
+"""What says that memory ran out is told from other errors."""
+
+import pytest
+
+from harness.process_limits import out_of_memory
+
+
+def raised_from(inner):
+    """As llvmlite raises what its library could not be loaded for."""
+    try:
+        try:
+            raise inner
+        except OSError:
+            raise OSError("Could not find/load shared object file 'libllvmlite.so'")  # noqa: B904
+    except OSError as error:
+        return error
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (MemoryError(), True),
+        (ImportError("libfcl.so: failed to map segment from shared object"), True),
+        (OSError(12, "Cannot allocate memory"), True),
+        (raised_from(OSError("libllvmlite.so: failed to map segment from shared object")), True),
+        (raised_from(OSError("libllvmlite.so: no such file")), False),
+        (ImportError("no module named numba"), False),
+    ],
+)
+def test_an_error_for_want_of_memory_is_told_from_others(error, told):
+    assert out_of_memory(error) is told
