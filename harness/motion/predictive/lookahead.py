@@ -10,14 +10,18 @@ from harness.kernel import step
 from harness.motion.predictive.cells import AROUND, Block, block, cell_number, layer_beyond
 from harness.motion.predictive.codes import Event, NeighbourSearch
 from harness.motion.predictive.prefetch import prefetch
-from harness.motion.predictive.state import Record, World
+from harness.motion.predictive.state import EventQueue, Record, World
 
 # Levels of the tree at which a winner's records, its cells or list, and its neighbours' motions are prefetched.
 SPHERE_LEVEL, AROUND_LEVEL, NEIGHBOURS_LEVEL = 6, 5, 4
+# Levels from a leaf on of which the nodes are prefetched.
+PATH_LEVELS = 9
+# Neighbours in the first cache line of a list.
+IN_A_LINE = 15
 
 
 @step
-def prefetch_ahead(world: World, k: int) -> None:
+def prefetch_ahead(world: World, k: int, crowded: bool) -> None:
     """After an update from sphere k's leaf: prefetch for the winners on its way up, the more the sooner they are due.
 
     The winner at a node of level m is due within the next 2^m events or so.
@@ -27,26 +31,51 @@ def prefetch_ahead(world: World, k: int) -> None:
     soon = int(queue.winners[leaf >> max(world.rules.depth - SPHERE_LEVEL, 0)])
     prefetch(spheres.motions, soon)
     prefetch(spheres.schedule, soon)
+    if crowded:
+        prefetch_path(queue, queue.time_bits.size // 2 + soon)
     prefetch_candidates(world, int(queue.winners[leaf >> max(world.rules.depth - AROUND_LEVEL, 0)]))
-    prefetch_neighbours(world, int(queue.winners[leaf >> max(world.rules.depth - NEIGHBOURS_LEVEL, 0)]))
+    prefetch_neighbours(world, int(queue.winners[leaf >> max(world.rules.depth - NEIGHBOURS_LEVEL, 0)]), crowded)
 
 
 @step
-def prefetch_neighbours(world: World, k: int) -> None:
+def prefetch_path(queue: EventQueue, leaf: int) -> None:
+    """Prefetch the way of an update from a leaf through the lowest nodes of the tree.
+
+    These were most of an update at 10^5 spheres; the nodes above are passed so often that they stay in the cache.
+    """
+    node = leaf
+    for _ in range(PATH_LEVELS):
+        prefetch(queue.time_bits, node)
+        prefetch(queue.winners, node)
+        node = node >> 1
+
+
+@step
+def prefetch_neighbours(world: World, k: int, crowded: bool) -> None:
     """Prefetch the motions of sphere k's neighbours."""
-    motions, cells, lists = world.spheres.motions, world.cells, world.lists
+    motions, cells = world.spheres.motions, world.cells
     if world.rules.neighbours == NeighbourSearch.LISTS:
-        for m in range(min(lists.members[k].count, 15)):
-            prefetch(motions, lists.members[k].who[m])
+        prefetch_members(world, k)
+        partner = int(world.spheres.schedule[k].partner)
+        if crowded and partner >= 0:
+            prefetch_members(world, partner)
     else:
         grid = cells.grids[world.spheres.schedule[k].size_class]
-        ahead = cells_ahead(grid, world.spheres.schedule[k])
-        for x in range(ahead.from_x, ahead.to_x + 1):
-            for y in range(ahead.from_y, ahead.to_y + 1):
-                for z in range(ahead.from_z, ahead.to_z + 1):
+        near = cells_ahead(grid, world.spheres.schedule[k])
+        for x in range(near.from_x, near.to_x + 1):
+            for y in range(near.from_y, near.to_y + 1):
+                for z in range(near.from_z, near.to_z + 1):
                     p = cells.heads[cell_number(grid, x, y, z)]
                     prefetch(motions, p)
                     prefetch(cells.following, p)
+
+
+@step
+def prefetch_members(world: World, k: int) -> None:
+    """Prefetch the motions of those in the first line of sphere k's list."""
+    members = world.lists.members[k]
+    for m in range(min(members.count, IN_A_LINE)):
+        prefetch(world.spheres.motions, members.who[m])
 
 
 @step
@@ -74,6 +103,7 @@ def prefetch_candidates(world: World, k: int) -> None:
         prefetch(lists.anchors, k)
         prefetch(lists.members, k)
         if partner >= 0:
+            prefetch(lists.anchors, partner)
             prefetch(lists.members, partner)
     else:
         grid = cells.grids[spheres.schedule[k].size_class]

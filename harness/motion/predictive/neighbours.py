@@ -12,7 +12,11 @@ from math import inf, sqrt
 from harness.kernel import step
 from harness.motion.predictive.cells import AROUND, block, gather_block, insert_by_position, remove
 from harness.motion.predictive.ignored import without_ignored
+from harness.motion.predictive.prefetch import prefetch
 from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
+
+# How many candidates ahead anchors are read into the cache.
+PREFETCHED = 8
 
 
 @step
@@ -33,6 +37,7 @@ def renew(world: World, k: int) -> bool:
     room = True
     for m in range(count):
         p = found[m]
+        prefetch(lists.anchors, found[min(m + PREFETCHED, count - 1)])
         if p != k and near(lists, k, p, world.rules.skin):
             theirs = members[p]
             if degree == CAPACITY or theirs.count == CAPACITY:
