@@ -122,8 +122,19 @@ def _prctl(option: int, value: object) -> None:
     ctypes.CDLL(None).prctl(option, value)
 
 
+# B of addresses; at 600 MB a command said that there was no memory, at 500 MB it waited for ever.
+_LIBRARIES_NEED = 640 * 2**20
 # What the system says of a library that it has no memory for.
 _OUT_OF_MEMORY = ("failed to map segment", "annot allocate memory")
+
+
+def has_room_for_libraries() -> bool:
+    """Whether this process may take what libraries of linear algebra need to be loaded.
+
+    With less, OpenBLAS asks for memory again and again, and neither ends nor fails.
+    """
+    most, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return most == resource.RLIM_INFINITY or most >= _LIBRARIES_NEED
 
 
 def out_of_memory(error: BaseException | None) -> bool:

@@ -1,5 +1,9 @@
 """What says that memory ran out is told from other errors."""
 
+import resource
+import subprocess
+import sys
+
 import pytest
 
 from harness.process_limits import out_of_memory
@@ -29,3 +33,17 @@ def raised_from(inner):
 )
 def test_an_error_for_want_of_memory_is_told_from_others(error, told):
     assert out_of_memory(error) is told
+
+
+@pytest.mark.parametrize("megabytes", [400, 500])
+def test_a_command_without_room_for_its_libraries_says_so_instead_of_waiting(megabytes, tmp_path):
+    ended = subprocess.run(
+        [sys.executable, "-m", "harness", "report"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (megabytes * 10**6,) * 2),
+    )
+    assert (ended.returncode, ended.stdout) == (1, "")
+    assert ended.stderr.startswith("memory ran out: this process may take less than the command needs")

@@ -11,6 +11,7 @@ from harness.cli.interruption import exit_code, heeding_signals
 from harness.cli.streams import reliable_streams
 from harness.cli.width import HelpFormatter
 from harness.errors import InputError
+from harness.process_limits import has_room_for_libraries, out_of_memory
 
 COMMANDS = {
     "sweep": "run experiments and keep every measurement",
@@ -30,6 +31,8 @@ COMMANDS = {
     "new": "write a commented experiment to start from",
 }
 
+_LIGHT = frozenset({"validate", "list", "new"})
+"""Commands that load no library of linear algebra."""
 
 _CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
 
@@ -68,6 +71,8 @@ def _run(words: Sequence[str]) -> int:
             parser.print_help()
             return 0 if words else 2
         name = words[0]
+        if name not in _LIGHT and not has_room_for_libraries():
+            raise MemoryError
         module = import_module(f"harness.cli.{name}")
         command = argparse.ArgumentParser(
             prog=f"harness {name}", description=module.__doc__, formatter_class=HelpFormatter
@@ -82,8 +87,6 @@ def _run(words: Sequence[str]) -> int:
         print("interrupted", file=sys.stderr)
         return exit_code(interruption)
     except (MemoryError, ImportError, OSError) as error:
-        from harness.process_limits import out_of_memory
-
         if not out_of_memory(error):
             raise
         print("memory ran out: this process may take less than the command needs (`ulimit -v`)", file=sys.stderr)
