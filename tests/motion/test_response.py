@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from harness.motion.response import CollisionResponse
@@ -33,16 +33,27 @@ def test_a_heavy_body_hands_on_what_its_mass_ratio_says(ratio):
     assert after[1, 0] == pytest.approx(2.0 * ratio / total, rel=4e-16)
 
 
+@pytest.mark.parametrize("response", ["elastic", "reflect"])
+@pytest.mark.parametrize("apart", [1e-100, 2.73710616e-163, 5e-324])
+def test_centres_nearly_in_one_place_answer_along_the_line_between_them(apart, response):
+    after, hits, _ = answer([[0, 0, 0], [0, -apart, 0]], [[0, 0, 0], [0, 1, 0]], response=response)
+    assert hits.tolist() == [True]
+    assert after.tolist() == ([[0, 1, 0], [0, 0, 0]] if response == "elastic" else [[0, 0, 0], [0, -1, 0]])
+
+
 @given(vectors, vectors, vectors, st.floats(0.1, 10), st.floats(0, 1))
+@example((0.0, -2.737106163722177e-163, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 1.0, 0.0)
 def test_elastic_keeps_momentum_and_turns_the_approach_by_the_restitution(gap, u, v, mass, restitution):
     gap = np.array(gap)
     before = np.array([u, v])
     after, hits, response = answer([[0, 0, 0], gap], before, masses=(1.0, mass), restitution=restitution)
+    for _ in range(2):
+        gap = gap * 2.0**500 if np.dot(gap, gap) < 1e-280 else gap  # or its products would be rounded to nothing
     approach = np.dot(before[1] - before[0], gap)
     assert hits[0] == (approach < 0)
     assert np.allclose(after[0] + mass * after[1], before[0] + mass * before[1], atol=1e-12)
     assert response.momentum_added < 1e-13
-    if hits[0] and np.dot(gap, gap) > 1e-12:
+    if hits[0] and 1e-12 < np.dot(gap, gap) < 1e12:
         assert np.dot(after[1] - after[0], gap) == pytest.approx(-restitution * approach, abs=1e-10)
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -187,7 +188,9 @@ def test_workers_that_cannot_be_started_are_a_sentence(small, capsys, monkeypatc
 
 
 def test_too_few_open_files_for_dask_are_a_sentence(small, capsys, monkeypatch):
-    monkeypatch.setattr("harness.runner.cluster.resource.getrlimit", lambda _: (20, 20))
+    limits = resource.getrlimit
+    few = {resource.RLIMIT_NOFILE: (20, 20)}
+    monkeypatch.setattr(resource, "getrlimit", lambda which: few.get(which) or limits(which))
     assert main(["sweep", "small.yaml", "--jobs", "2"]) == 2
     assert "this needs 80 open files, and a process may have 20 here (`ulimit -n`)" in capsys.readouterr().err
 
