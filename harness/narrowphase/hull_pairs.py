@@ -24,7 +24,7 @@ from harness.narrowphase.verdicts import PairVerdict, PairVerdicts
 from harness.scene.hull import Hull
 from harness.threads import Threads
 
-FEWEST_SHARED = 512
+FEWEST_SHARED = 256
 """Pairs that are worth handing over to another thread."""
 
 

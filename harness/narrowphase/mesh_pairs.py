@@ -28,7 +28,7 @@ LEVELS_UP = 3
 NEARBY_STEPS = 100
 STEPS = 20_000
 
-FEWEST_SHARED = 64
+FEWEST_SHARED = 32
 """Pairs that are worth handing over to another thread."""
 
 

@@ -39,7 +39,7 @@ def point_of(threads, scene="{shape: sphere, count: 400, box: [9, 9, 9]}"):
 def test_parts_cover_all_items_once(items, count):
     parts = Threads(count).parts(items, 10)
     assert [place for begin, end in parts for place in range(begin, end)] == list(range(items))
-    assert len(parts) <= 2 * count
+    assert len(parts) <= 8 * count
 
 
 def test_what_comes_of_parts_stands_in_their_order():
