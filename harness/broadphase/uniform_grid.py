@@ -19,7 +19,7 @@ from harness.threads import Threads
 CELLS_PER_BODY = 8
 """Cells that all levels together may have for each body; in a dilute scene cells grow until they keep to it."""
 
-FEWEST_SHARED = 4096
+FEWEST_SHARED = 32768
 """Bodies that are worth handing over to another thread."""
 
 
