@@ -6,8 +6,10 @@ Every item is worked on by itself, so that who does which changes no result. Ker
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
 
 Result = TypeVar("Result")
 
@@ -48,6 +50,8 @@ class Threads:
         if len(parts) == 1:
             return [work(*parts[0])]
         if self._pool is None:
+            from concurrent.futures import ThreadPoolExecutor  # only a run that shares needs it
+
             self._pool = ThreadPoolExecutor(self.count - 1)
         left, done = iter(enumerate(parts)), dict[int, Result]()
 

@@ -22,7 +22,6 @@ from harness.narrowphase.containment import winding
 from harness.narrowphase.triangle_tree import TriangleTree, triangle_tree
 from harness.narrowphase.vectors import Vector, cross, dot, minus
 from harness.scene.mesh import Mesh, Triangles
-from harness.scene.topology import proper, topology
 
 # Nodes along a side. With 24 following a contact takes 5 % longer; with 48 no less, and making it three times as long.
 NODES = 32
@@ -59,7 +58,9 @@ def no_field() -> ClearanceField:
 
 def clearance_field(mesh: Mesh, nodes: int = NODES) -> ClearanceField:
     """The field of a mesh of diameter 1."""
-    from scipy.ndimage import label
+    from scipy.ndimage import label  # with what follows: only a run that follows contacts of surfaces needs scipy
+
+    from harness.scene.topology import proper, topology
 
     counts = topology(mesh.faces, len(mesh.vertices))
     if counts.nonmanifold or counts.turned or counts.pieces != 1:
