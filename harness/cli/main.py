@@ -32,7 +32,7 @@ COMMANDS = {
 }
 
 _LIGHT = frozenset({"validate", "list", "new"})
-"""Commands that load no library of linear algebra."""
+"""Commands that do without scipy, whose linear algebra waits for memory for ever."""
 
 _CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
 

@@ -81,20 +81,16 @@ class Heights(NamedTuple):
 
 
 class Piercing(NamedTuple):
-    """How far the ends of an edge are on either side of the plane of a triangle, and for how long they are looked at.
+    """Where the ends of an edge are, and for how long they are looked at.
 
     Attributes
     ----------
-    above, below : m, of the first end above the plane, and of the second below it
-    rise, fall : m/s, at which these grow
+    ends : Heights
     time : s
     slack : m, by which an acceleration can change a distance in this time
     """
 
-    above: float
-    below: float
-    rise: float
-    fall: float
+    ends: Heights
     time: float
     slack: float
 
@@ -226,7 +222,7 @@ def edge_stays(face: Triangle, edge: MovingEdge, known: float) -> float:
 def stays_through(inside: tuple[Side, Side, Side], edge: MovingEdge, ends: Heights, time: float) -> bool:
     """Whether an edge certainly passes through a triangle until a time, s."""
     slack = 0.5 * (edge.bend + edge.growth * time) * time * time
-    through = Piercing(ends.above, ends.below, ends.rise, ends.fall, time, slack)
+    through = Piercing(ends, time, slack)
     return (
         min(ends.above, ends.above + ends.rise * time) > slack
         and min(ends.below, ends.below + ends.fall * time) > slack
@@ -258,7 +254,8 @@ def stays_inside(corner: Vector, axis: Vector, edge: MovingEdge, through: Pierci
     edge : MovingEdge
     through : Piercing
     """
-    above, below, rise, fall = through.above, through.below, through.rise, through.fall
+    ends = through.ends
+    above, below, rise, fall = ends.above, ends.below, ends.rise, ends.fall
     time, slack = through.time, through.slack
     inside_p, inside_q = dot(axis, minus(edge.p, corner)), dot(axis, minus(edge.q, corner))
     into_p, into_q = dot(axis, edge.velocity_p), dot(axis, edge.velocity_q)

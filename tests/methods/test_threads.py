@@ -68,12 +68,15 @@ def test_a_grid_that_is_shared_finds_the_same_pairs_in_the_same_order(monkeypatc
 def test_counters_and_digests_are_those_of_one_thread(shape, size, monkeypatch):
     for module in (uniform_grid, hull_pairs, mesh_pairs):
         monkeypatch.setattr(module, "FEWEST_SHARED", 8)
+    shared, each = [], Threads.each
+    monkeypatch.setattr(Threads, "each", lambda self, work, parts: shared.append(len(parts)) or each(self, work, parts))
     scene = f"{{shape: {shape}, mesh: cube.ply, count: 400, box: [9, 9, 9], size: {size}, overlap: allow}}"
     files = SceneFiles.of((cube_mesh(),))
     found = [execute(point_of(threads, scene), files).metrics for threads in (1, 2, 3)]
     told = [{name: metrics[name] for name in COUNTERS if name in metrics} for metrics in found]
     assert told[0]["pair_hits"] > 100
     assert told[0] == told[1] == told[2]
+    assert sum(parts > 1 for parts in shared) >= 60  # 30 frames of each
 
 
 def test_a_plan_says_which_time_tells_what_threads_save():
