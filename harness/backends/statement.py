@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, queries, units
+from harness.installed import importable
 from harness.kept_files import keep, kept
 from harness.kernel_cache import PACKAGE
 from harness.process_limits import isolate, limit_memory_of_stranger
@@ -111,8 +112,7 @@ def _say_once(name: str, path: tuple[str, ...]) -> Statement:
     known = hashlib.sha256(f"{name} {sys.version}".encode())
     for file in sorted((PACKAGE / "backends").glob("*.py")):
         known.update(file.read_bytes())
-    for folder in path:
-        known.update("\n".join(_importable(folder)).encode("utf-8", "surrogateescape"))
+    known.update(importable(path).encode())
     key = f"{known.hexdigest()[:40]}.json"
     content = kept("statements", key)
     if content is not None and (said := _read(content)) is not None:
@@ -121,20 +121,6 @@ def _say_once(name: str, path: tuple[str, ...]) -> Statement:
     if said.missing is None:
         keep("statements", key, _written(said))
     return said
-
-
-def _importable(folder: str) -> list[str]:
-    """What a folder of `sys.path` holds that can be imported or says what is installed, with its version."""
-    try:
-        names = sorted(os.listdir(folder))
-    except OSError:  # an archive, or nothing
-        return []
-    ends = (".py", ".so", ".pth", "-info")
-    return [
-        name
-        for name in names
-        if name.endswith(ends) or ("." not in name and os.path.exists(os.path.join(folder, name, "__init__.py")))
-    ]
 
 
 def _say(name: str) -> Statement:
