@@ -101,9 +101,7 @@ def test_that_one_of_ours_lacks_a_package_is_known_until_there_is_one(tmp_path, 
 
     def create(name):
         why = BackendError(name, "not installed; pip install drake")
-        raise why from ModuleNotFoundError(
-            "No module named 'there_is_no_such_library'", name="there_is_no_such_library.a"
-        )
+        raise why from ModuleNotFoundError("No module named no_library", name="there_is_no_such_library.a")
 
     with monkeypatch.context() as changed:
         changed.setattr(registry, "create", create)
