@@ -199,6 +199,11 @@ class Child:
         """Whether something has come that is no whole message."""
         return bool(self._received)
 
+    def send(self, content: bytes) -> None:
+        """Send a message to a child that waits for one; whether it has ended is seen by `receive`."""
+        with suppress(ConnectionError):
+            _send(self._socket, content)
+
     def ask(self, content: bytes, seconds: float) -> bytes | NoMessage:
         """Send a message and wait for one, as `receive` does."""
         deadline = time.monotonic() + seconds

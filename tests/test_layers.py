@@ -24,6 +24,7 @@ BASE = {
     "threads",
     "vocabulary",
     "whole_file",
+    "workers",
 }
 KERNELS = {"scene", "narrowphase", "broadphase"}
 FLIGHT = KERNELS | {"backends", "measure", "motion", "methods"}
