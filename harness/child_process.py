@@ -331,10 +331,19 @@ def end(child: int) -> Ending:
 
 
 def _kill_descendants(process: int) -> None:
+    """Kill all that a process has started: again and again, since what is not dead yet may start more."""
     with suppress(psutil.NoSuchProcess):
-        for started in psutil.Process(process).children(recursive=True):
-            with suppress(psutil.Error):  # it has ended, or is not ours to end
-                started.kill()
+        while any([_killed(started) for started in psutil.Process(process).children(recursive=True)]):
+            time.sleep(0.001)
+
+
+def _killed(process: psutil.Process) -> bool:
+    """Whether there was a process left to kill: it may have ended, or not be ours to end."""
+    try:
+        process.kill()
+        return process.status() != psutil.STATUS_ZOMBIE
+    except psutil.Error:
+        return False
 
 
 def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, output: int | None) -> NoReturn:

@@ -15,6 +15,7 @@ BASE = {
     "child_process",
     "cpu_time",
     "errors",
+    "installed",
     "kernel",
     "kernel_cache",
     "kept_files",
