@@ -333,7 +333,7 @@ def end(child: int) -> Ending:
 def _kill_descendants(process: int) -> None:
     """Kill all that a process has started: again and again, since what is not dead yet may start more."""
     with suppress(psutil.NoSuchProcess):
-        while any([_killed(started) for started in psutil.Process(process).children(recursive=True)]):
+        while sum(_killed(started) for started in psutil.Process(process).children(recursive=True)):
             time.sleep(0.001)
 
 
