@@ -149,6 +149,7 @@ def test_a_run_has_one_thread_and_one_core(spheres, servers):
     assert report.conditions["core"] in os.sched_getaffinity(0)
 
 
+@pytest.mark.slow
 def test_what_a_run_met_is_told(spheres, servers):
     report = run_one(spheres(), servers)
     assert {"load", "seconds", "flights"} <= report.conditions.keys() <= CONDITIONS.keys()
