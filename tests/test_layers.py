@@ -16,6 +16,7 @@ BASE = {
     "child_process",
     "cpu_time",
     "errors",
+    "installed",
     "kernel",
     "kernel_cache",
     "kept_files",
