@@ -58,6 +58,7 @@ def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, ca
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("way", "missing"), [("leaves a process", None), ("leaves a process and exits", WAYS["exits"])]
 )

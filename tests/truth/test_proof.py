@@ -53,7 +53,10 @@ CLOSED_FORMS = [
 ]
 
 
-@pytest.mark.parametrize(("first", "second", "time"), CLOSED_FORMS)
+@pytest.mark.parametrize(
+    ("first", "second", "time"),
+    [CLOSED_FORMS[0], *(pytest.param(*one, marks=pytest.mark.slow) for one in CLOSED_FORMS[1:])],
+)
 def test_a_bracket_around_the_closed_form_is_proven_and_one_beside_it_is_refused(first, second, time):
     assert reason(first, second, *around(time)) == ""
     assert "not proven apart" in reason(first, second, *around(time + 1e-6))
