@@ -62,6 +62,11 @@ class MeasuredPoint:
         ended: pd.DataFrame = self.runs[self.runs["status"] == "ok"]
         return ended
 
+    @cached_property
+    def statuses(self) -> frozenset[str]:
+        """How its runs ended; none where there are none."""
+        return frozenset(self.runs["status"])
+
     def values(self, metric: str) -> npt.NDArray[np.float64]:
         """The metric of every good run that reports it, by repeat."""
         if metric not in self._values:

@@ -17,7 +17,7 @@ from typing import Any, Literal
 import pandas as pd
 
 from harness.measure.limits import Limits, limits
-from harness.measure.selection import matching, which
+from harness.measure.selection import Columns, matching, which
 from harness.report.criteria import as_criterion
 from harness.report.experiment import ExperimentPage
 from harness.report.methods import methods_of
@@ -77,9 +77,10 @@ class Case:
 
     def result(self, pipeline: str) -> CaseResult | None:
         """What became of it by a pipeline; None where it was not run."""
-        mine = self.runs[[method.pipeline == pipeline for method in self.methods]]
-        if mine.empty:
+        chosen = [method.pipeline == pipeline for method in self.methods]
+        if not any(chosen):
             return None
+        mine = self.runs[chosen]
         record = self.page.record
         broken = mine[~mine["status"].isin(("ok", "rejected"))]
         if len(broken):
@@ -97,7 +98,7 @@ class Case:
 
     def _judged(self, rows: Sequence[VerdictRow], mine: pd.DataFrame) -> Iterator[tuple[str, str]]:
         """Of every row of `expect` or `claims` that speaks of these runs: its verdict on them, and its worst number."""
-        points = mine.drop_duplicates("point")
+        points = Columns(mine.drop_duplicates("point"))
         for row in rows:
             among = which(points, row.criterion.get("where") or {})
             bounds = limits(as_criterion(row.criterion))
