@@ -11,7 +11,7 @@ the places that are not free such a bit refuses nine in ten.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,24 +32,34 @@ ROUNDING = 1e-6
 Place = tuple[float, float, float]
 
 
+# What a search reads of a sphere, on one cache line.
+SPHERE = np.dtype(
+    {
+        "names": ["position", "radius", "following"],
+        "formats": [(np.float64, 3), np.float64, np.int32],
+        "itemsize": 64,
+    }
+)
+
+
 class Placed(NamedTuple):
     """Spheres of which some are placed.
 
     Attributes
     ----------
-    positions : (n, 3) m, written as they are placed
-    radii : (n,) m, the largest first
+    spheres : (n,) of SPHERE, the largest first; positions in m are written as they are placed, and which sphere was
+        placed before in the same cell, or -1
+    radii : (n,) m, the same
     half : (3,) m, half the sides of the box
     levels : (n,) number of each sphere's grid
     cells : (levels, 3) of each grid, along each axis
     offsets : (levels,) the first cell of each grid in `heads` and `taken`
     largest, least : (levels,) m, the largest and the smallest radius
     heads : (cells,) the sphere placed last in each cell, or -1
-    following : (n,) the sphere placed before in the same cell, or -1
     taken : (cells,) of each voxel a bit, set where a sphere of the same grid is in the way of the smallest of it
     """
 
-    positions: Floats
+    spheres: Any
     radii: Floats
     half: Floats
     levels: Integers
@@ -58,7 +68,6 @@ class Placed(NamedTuple):
     largest: Floats
     least: Floats
     heads: Indices
-    following: Indices
     taken: Bits
 
 
@@ -93,8 +102,10 @@ def none_placed(radii: Floats, half: Floats) -> Placed:
     last = np.append(first[1:], count) - 1
     cells = np.array([_cells(2 * radii[k], int(end - k + 1), half) for k, end in zip(first, last, strict=True)])
     ends = np.cumsum(cells.prod(axis=1))
+    spheres = np.zeros(count, SPHERE)
+    spheres["radius"] = radii
     return Placed(
-        positions=np.empty((count, 3)),
+        spheres=spheres,
         radii=radii,
         half=half,
         levels=levels,
@@ -103,7 +114,6 @@ def none_placed(radii: Floats, half: Floats) -> Placed:
         largest=radii[first],
         least=radii[last],
         heads=np.full(ends[-1], -1, np.int32),
-        following=np.full(count, -1, np.int32),
         taken=np.zeros(ends[-1], np.uint64),
     )
 
@@ -129,13 +139,14 @@ def put(placed: Placed, body: int, place: Place) -> None:
     """Put a sphere at a place where no other is in its way."""
     level = placed.levels[body]
     grid = grid_of(placed, level)
+    sphere = placed.spheres[body]
     x, y, z = place
-    placed.positions[body, 0], placed.positions[body, 1], placed.positions[body, 2] = x, y, z
+    sphere.position[0], sphere.position[1], sphere.position[2] = x, y, z
     ix = along((x + grid.x) * grid.per_x, grid.nx)
     iy = along((y + grid.y) * grid.per_y, grid.ny)
     iz = along((z + grid.z) * grid.per_z, grid.nz)
     cell = grid.first + (ix * grid.ny + iy) * grid.nz + iz
-    placed.following[body] = placed.heads[cell]
+    sphere.following = placed.heads[cell]
     placed.heads[cell] = body
     take(placed.taken, grid, place, placed.radii[body] + placed.least[level])
 
@@ -210,13 +221,14 @@ def overlaps(placed: Placed, last: Indices, place: Place, radius: float) -> bool
     """Whether one of these spheres, or of those placed before in their cells, overlaps one at a place."""
     for other in last:
         while other >= 0:
-            dx = place[0] - placed.positions[other, 0]
-            dy = place[1] - placed.positions[other, 1]
-            dz = place[2] - placed.positions[other, 2]
-            touch = radius + placed.radii[other]
+            sphere = placed.spheres[other]
+            dx = place[0] - sphere.position[0]
+            dy = place[1] - sphere.position[1]
+            dz = place[2] - sphere.position[2]
+            touch = radius + sphere.radius
             if dx * dx + dy * dy + dz * dz < touch * touch:
                 return True
-            other = placed.following[other]
+            other = sphere.following
     return False
 
 
@@ -228,7 +240,7 @@ def along(coordinate: float, cells: int) -> int:
 
 @kernel
 def not_taken(placed: Placed, body: int, draws: Floats, left: Integers) -> int:
-    """Which of a few draws no bit refuses.
+    """Which of a few draws no bit refuses; what a search for these reads is in the caches soon after.
 
     Parameters
     ----------
@@ -254,7 +266,21 @@ def not_taken(placed: Placed, body: int, draws: Floats, left: Integers) -> int:
     for k in range(len(draws)):
         left[count] = k
         count += not alike or not (taken[cells[k]] >> bits[k]) & np.uint64(1)
+    prefetch_around(placed, grid, cells, left[:count])
     return count
+
+
+@inner
+def prefetch_around(placed: Placed, grid: Grid, cells: Integers, left: Integers) -> None:
+    """Prefetch what will be searched for some of the draws, of which the cells are given: most of it was waiting."""
+    for k in left:
+        for row in range(9):
+            prefetch(placed.heads, cells[k] + ((row // 3 - 1) * grid.ny + row % 3 - 1) * grid.nz)
+    for k in left:
+        for row in range(9):
+            middle = cells[k] + ((row // 3 - 1) * grid.ny + row % 3 - 1) * grid.nz
+            for cell in range(max(middle - 1, 0), min(middle + 2, len(placed.heads))):
+                prefetch(placed.spheres, placed.heads[cell])
 
 
 @inner

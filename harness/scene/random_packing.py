@@ -48,12 +48,12 @@ def add_at_random(radii: Floats, half: Floats, rng: np.random.Generator) -> Floa
         draws = rng.random((min(tries, max(1024, min(4 * (count - done), 1 << 18))), 3))
         done = (_add_few if count <= FEW and loose else _add)(done, placed, draws)
         tries -= len(draws)
-    return placed.positions[:done]
+    return np.array(placed.spheres["position"][:done])
 
 
 def _add_few(done: int, placed: Placed, draws: Floats) -> int:
     """As `_add`, to the bit: some draws at once against all spheres that are placed, more where few are free."""
-    positions, radii, half = placed.positions, placed.radii, placed.half
+    positions, radii, half = placed.spheres["position"], placed.radii, placed.half
     at_once = _AT_ONCE[0]
     while len(draws) and done < len(radii):
         some, radius = draws[:at_once], radii[done]
