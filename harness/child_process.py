@@ -199,6 +199,11 @@ class Child:
         """Whether something has come that is no whole message."""
         return bool(self._received)
 
+    def send(self, content: bytes) -> None:
+        """Send a message to a child that waits for one; whether it has ended is seen by `receive`."""
+        with suppress(ConnectionError):
+            _send(self._socket, content)
+
     def ask(self, content: bytes, seconds: float) -> bytes | NoMessage:
         """Send a message and wait for one, as `receive` does."""
         deadline = time.monotonic() + seconds
@@ -326,10 +331,19 @@ def end(child: int) -> Ending:
 
 
 def _kill_descendants(process: int) -> None:
+    """Kill all that a process has started: again and again, since what is not dead yet may start more."""
     with suppress(psutil.NoSuchProcess):
-        for started in psutil.Process(process).children(recursive=True):
-            with suppress(psutil.Error):  # it has ended, or is not ours to end
-                started.kill()
+        while sum(_killed(started) for started in psutil.Process(process).children(recursive=True)):
+            time.sleep(0.001)
+
+
+def _killed(process: psutil.Process) -> bool:
+    """Whether there was a process left to kill: it may have ended, or not be ours to end."""
+    try:
+        process.kill()
+        return process.status() != psutil.STATUS_ZOMBIE
+    except psutil.Error:
+        return False
 
 
 def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, output: int | None) -> NoReturn:

@@ -81,9 +81,9 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def adopt_orphans() -> None:
-    """Let what the children of this process leave behind become its own children, so that it can be ended."""
-    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+def adopt_orphans(wanted: bool = True) -> None:
+    """Let what the children of this process leave behind become its own, so that it can be ended; or no longer."""
+    _prctl(_PR_SET_CHILD_SUBREAPER, int(wanted))
 
 
 def adopts_orphans() -> bool:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,11 @@ from harness.scene.box import Box
 from harness.scene.hull import convex_hull
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
+
+# Both workers and hundreds of processes import the same sources, which are compiled once: where the environment says
+# that nothing compiled is kept, seconds of each worker and a second of each process go into compiling them again.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # the first call of a kernel compiles it, so a time limit an example would fail at random
 settings.register_profile("harness", deadline=None)
@@ -49,6 +57,8 @@ LONGEST_FILES = (
     "test_readme.py",
 )
 LONGEST = ("runner", "compare", "narrowphase", "cli", "motion")
+# Rooms whose tests share what takes seconds to make, such as all pages of a report: one worker has them all.
+TOGETHER = ("report",)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -61,13 +71,24 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=place)
 
 
+def pytest_collection_finish() -> None:
+    """What is there by now stays: the garbage collector, and those of forked processes, need not look at it again."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """A file's tests go to one worker, in their order: they share servers, and some look at their own children."""
     from xdist.scheduler import LoadFileScheduling
 
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = super()._split_scope(nodeid)
+            return next((room for room in TOGETHER if file.startswith(f"tests/{room}/")), file)
+
     config.option.loadscopereorder = False
-    return LoadFileScheduling(config, log)
+    return Scheduling(config, log)
 
 
 def make_bodies(positions, velocities=None, *, sizes=None, masses=None, spins=None, quaternions=None) -> Bodies:

@@ -110,6 +110,7 @@ def test_a_user_without_a_home_has_no_cache(monkeypatch):
     assert user_cache() is None
 
 
+@pytest.mark.slow
 def test_a_folder_belongs_to_a_module_and_all_that_it_imports():
     for module in ("harness.broadphase.grid", "harness.narrowphase.gap_pairs", "harness.motion.predictive.flight"):
         program = f"import sys, {module}; print(*(m for m in sys.modules if m.startswith('harness.')))"

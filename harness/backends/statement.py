@@ -16,10 +16,12 @@ import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache, partial
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from harness.backends import registry
 from harness.backends.protocol import approximations, precision, queries, units
+from harness.installed import importable
 from harness.kept_files import keep, kept
 from harness.kernel_cache import PACKAGE
 from harness.process_limits import isolate, limit_memory_of_stranger
@@ -44,6 +46,7 @@ class Statement:
     tolerance : of size, by the shapes that it has
     approximations : by what it replaces a shape
     queries : what it can be asked
+    lacks : the package that it imports and that is not installed
     """
 
     missing: str | None
@@ -53,6 +56,7 @@ class Statement:
     units: str = ""
     precision: str = ""
     queries: tuple[str, ...] = ()
+    lacks: str = ""
 
 
 def statement(name: str, seconds: float = LISTED) -> Statement:
@@ -107,34 +111,22 @@ def _asked(name: str, seconds: float, path: tuple[str, ...]) -> Statement:
 
 
 def _say_once(name: str, path: tuple[str, ...]) -> Statement:
-    """What it says, as long as its sources and what can be imported are the same; why it is missing, each time anew."""
+    """What it says, as long as its sources and what can be imported are the same.
+
+    Why it is missing is found out each time, unless it lacks a package that still is not there.
+    """
     known = hashlib.sha256(f"{name} {sys.version}".encode())
     for file in sorted((PACKAGE / "backends").glob("*.py")):
         known.update(file.read_bytes())
-    for folder in path:
-        known.update("\n".join(_importable(folder)).encode("utf-8", "surrogateescape"))
+    known.update(importable(path).encode())
     key = f"{known.hexdigest()[:40]}.json"
     content = kept("statements", key)
-    if content is not None and (said := _read(content)) is not None:
+    if content is not None and (said := _read(content)) is not None and not (said.lacks and find_spec(said.lacks)):
         return said
     said = _say(name)
-    if said.missing is None:
+    if said.missing is None or (said.lacks and find_spec(said.lacks) is None):
         keep("statements", key, _written(said))
     return said
-
-
-def _importable(folder: str) -> list[str]:
-    """What a folder of `sys.path` holds that can be imported or says what is installed, with its version."""
-    try:
-        names = sorted(os.listdir(folder))
-    except OSError:  # an archive, or nothing
-        return []
-    ends = (".py", ".so", ".pth", "-info")
-    return [
-        name
-        for name in names
-        if name.endswith(ends) or ("." not in name and os.path.exists(os.path.join(folder, name, "__init__.py")))
-    ]
 
 
 def _say(name: str) -> Statement:
@@ -151,7 +143,8 @@ def _say(name: str) -> Statement:
                 queries=tuple(map(str, queries(backend))),
             )
     except registry.BackendError as error:
-        return Statement(_one_line(error.why), installed=False)
+        lacking = error.__cause__.name if isinstance(error.__cause__, ModuleNotFoundError) else None
+        return Statement(_one_line(error.why), installed=False, lacks=(lacking or "").partition(".")[0])
     except MemoryError:
         return Statement("importing it takes more than half of the memory of this machine")
     except (Exception, SystemExit) as error:

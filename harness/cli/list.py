@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from harness.cli.width import say
 from harness.vocabulary import ALGORITHMS, QUERIES, Query, algorithms_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 FOLDER = "experiments"
 
@@ -50,8 +53,9 @@ def _experiments() -> list[dict[str, Any]]:
     """Every experiment of the folder; of one that is wrong, how many problems it has; and what it lacks here."""
     from pathlib import Path
 
-    from harness.errors import InputError, NotInstalledError
-    from harness.experiment.load import find_experiments, load, name_of
+    from harness.errors import InputError
+    from harness.experiment.files import find_experiments
+    from harness.experiment.kept_facts import kept_facts
 
     if not Path(FOLDER).is_dir():
         return []
@@ -59,21 +63,28 @@ def _experiments() -> list[dict[str, Any]]:
         paths = find_experiments([FOLDER])
     except InputError:
         return []
-    rows: list[dict[str, Any]] = []
-    for path in paths:
-        row: dict[str, Any] = {"name": name_of(path), "path": str(path), "missing": None}
-        try:
-            experiment = load(path)
-        except NotInstalledError as error:
-            missing = "; ".join(dict.fromkeys(problem.message for problem in error.problems))
-            row |= {"title": None, "points": None, "runs": None, "tier": None, "problems": 0, "missing": missing}
-        except InputError as error:
-            row |= {"title": None, "points": None, "runs": None, "tier": None, "problems": len(error.problems)}
-        else:
-            points, tier = len(experiment.points), experiment.measure.tier
-            row |= {"title": experiment.title, "points": points, "runs": experiment.runs, "tier": tier, "problems": 0}
-        rows.append(row)
-    return rows
+    return [kept_facts("list", path, {}) or _experiment(path) for path in paths]
+
+
+def _experiment(path: Path) -> dict[str, Any]:
+    """What is listed of a file, which is read; of a valid one it is kept."""
+    from harness.errors import InputError, NotInstalledError
+    from harness.experiment.files import name_of
+    from harness.experiment.kept_facts import keep_facts
+    from harness.experiment.load import load
+
+    row: dict[str, Any] = {"name": name_of(path), "path": str(path), "missing": None}
+    try:
+        experiment = load(path)
+    except NotInstalledError as error:
+        missing = "; ".join(dict.fromkeys(problem.message for problem in error.problems))
+        return row | {"title": None, "points": None, "runs": None, "tier": None, "problems": 0, "missing": missing}
+    except InputError as error:
+        return row | {"title": None, "points": None, "runs": None, "tier": None, "problems": len(error.problems)}
+    points, tier = len(experiment.points), experiment.measure.tier
+    row |= {"title": experiment.title, "points": points, "runs": experiment.runs, "tier": tier, "problems": 0}
+    keep_facts("list", path, {}, experiment.source, experiment.mesh_paths, experiment.poses_paths, row)
+    return row
 
 
 def _experiment_line(row: dict[str, Any]) -> str:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
@@ -12,10 +12,9 @@ from harness.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.text import Text
 
-    from harness.experiment.experiment import Experiment, Point
-    from harness.methods.stages import Plan
+# Of runs whose plans are kept: those of more take megabytes.
+_MOST_KEPT = 1000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,86 +26,127 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     import json
     import sys
-    from dataclasses import asdict
+    from pathlib import Path
 
+    from harness.experiment.kept_facts import kept_facts
+
+    overrides = overrides_of(arguments)
+    planned = kept_facts("plan", Path(arguments.path), overrides) or _planned(arguments.path, overrides)
+    if arguments.json:
+        json.dump({"runs": planned["runs"]}, sys.stdout, allow_nan=False)
+        print()
+        return 0
+    _show(planned)
+    return 0
+
+
+def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
+    """The title of an experiment, its leaves that vary, and its runs with their plans; they are kept.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong with it.
+    """
+    from dataclasses import asdict
+    from pathlib import Path
+
+    from harness.backends.registry import ours
+    from harness.experiment.kept_facts import keep_facts
     from harness.runner.point import plan_of
     from harness.runner.preparation import prepare
     from harness.runner.scene_of_point import SceneSizeError, build_scene
     from harness.runner.servers import files_of
     from harness.scene.launch import PlacementError
 
-    experiments, meshes = prepare([arguments.path], overrides_of(arguments))
+    experiments, meshes = prepare([path], overrides)
     experiment = experiments[0]
-    plans = []
+    runs: list[dict[str, Any]] = []
     for point in experiment.points:
         try:
             scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)
         except (SceneSizeError, PlacementError) as error:
             leaf = "count" if point.scene.bodies is None else "bodies"
             raise InputError([experiment.leaf_problem(leaf, point.parameters[leaf], str(error))]) from error
-        plans.append((point, plan_of(point, scene)))
-    if arguments.json:
-        runs = [
-            {
-                "parameters": point.parameters,
-                "stages": [asdict(stage) for stage in plan.stages],
-                "warnings": list(plan.warnings),
-            }
-            for point, plan in plans
-        ]
-        json.dump({"runs": runs}, sys.stdout, allow_nan=False)
-        print()
-        return 0
-    _show(experiment, plans)
-    return 0
+        plan = plan_of(point, scene)
+        stages = [asdict(stage) for stage in plan.stages]
+        runs.append({"parameters": point.parameters, "stages": stages, "warnings": list(plan.warnings)})
+    planned = {"title": experiment.title, "swept": list(experiment.swept), "runs": runs}
+    strangers = {point.engine.backend for point in experiment.points if not ours(point.engine.backend)}
+    if experiment.path == Path(path) and len(runs) <= _MOST_KEPT and not strangers:
+        of_file = experiment.source, experiment.mesh_paths, experiment.poses_paths
+        keep_facts("plan", experiment.path, overrides, *of_file, planned)
+    return planned
 
 
-def _show(experiment: Experiment, plans: Sequence[tuple[Point, Plan]]) -> None:
+def _show(planned: Mapping[str, Any]) -> None:
     """One table for all points that have the same plan."""
+    console = _terminal()
+    for runs in _alike(planned["runs"]):
+        first = runs[0]
+        title = f"{planned['title']}{_named(planned['swept'], runs)}"
+        _print(console, title, "bold")
+        for warning in first["warnings"]:
+            _print(console, f"  WARNING   {warning}", "bold red")
+        if console is None:
+            for stage in first["stages"]:
+                say(f"  {_decision(stage):10}  {stage['name']:13}  {stage['why']}")
+        else:
+            _print_table(console, first["stages"])
+
+
+def _terminal() -> Console | None:
+    """What prints in colours, where standard output is a terminal or a variable says so."""
+    import os
+    import sys
+
+    # of a library that only a terminal is worth waiting for, which looks at these variables besides
+    if not sys.stdout.isatty() and not {"FORCE_COLOR", "TTY_COMPATIBLE"} & os.environ.keys():
+        return None
     from rich.console import Console
+
+    console = Console(highlight=False)
+    return console if console.is_terminal else None
+
+
+def _print(console: Console | None, text: str, style: str) -> None:
+    if console is None:
+        say(text)
+        return
+    from rich.text import Text
+
+    console.print(Text(text, style))
+
+
+def _print_table(console: Console, stages: Sequence[Mapping[str, Any]]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    console = Console(highlight=False)
-    for plan, points in _alike(plans):
-        title = f"{experiment.title}{_named(experiment, points)}"
-        _print(console, Text(title, "bold"))
-        for warning in plan.warnings:
-            _print(console, Text(f"  WARNING   {warning}", "bold red"))
-        table = Table.grid(padding=(0, 2, 0, 0))
-        for stage in plan.stages:
-            decision = "keeps" if stage.kept else "leaves out"
-            if console.is_terminal:
-                style = "" if stage.kept else "dim"
-                shown = Text(decision, "green" if stage.kept else "yellow"), Text(stage.name, f"bold {style}")
-                table.add_row("", *shown, Text(stage.why, style))
-            else:
-                say(f"  {decision:10}  {stage.name:13}  {stage.why}")
-        if console.is_terminal:
-            console.print(table)
+    table = Table.grid(padding=(0, 2, 0, 0))
+    for stage in stages:
+        style = "" if stage["kept"] else "dim"
+        decision = Text(_decision(stage), "green" if stage["kept"] else "yellow")
+        table.add_row("", decision, Text(stage["name"], f"bold {style}"), Text(stage["why"], style))
+    console.print(table)
 
 
-def _print(console: Console, text: Text) -> None:
-    if console.is_terminal:
-        console.print(text)
-    else:
-        say(text.plain)
+def _decision(stage: Mapping[str, Any]) -> str:
+    return "keeps" if stage["kept"] else "leaves out"
 
 
-def _alike(plans: Sequence[tuple[Point, Plan]]) -> Iterable[tuple[Plan, list[Point]]]:
-    """Each plan once, with all of its points, in the order of its first."""
-    points: dict[Plan, list[Point]] = {}
-    for point, plan in plans:
-        points.setdefault(plan, []).append(point)
-    return points.items()
+def _alike(runs: Sequence[dict[str, Any]]) -> Iterable[list[dict[str, Any]]]:
+    """The runs of each plan, in the order of its first."""
+    import json
+
+    alike: dict[str, list[dict[str, Any]]] = {}
+    for run in runs:
+        alike.setdefault(json.dumps([run["stages"], run["warnings"]]), []).append(run)
+    return alike.values()
 
 
-def _named(experiment: Experiment, points: Sequence[Point]) -> str:
+def _named(swept: Sequence[str], runs: Sequence[Mapping[str, Any]]) -> str:
     """The points, by the values of the leaves that vary."""
     from harness.experiment.messages import flow
 
-    varied = [
-        f"{leaf} {', '.join(dict.fromkeys(flow(point.parameters[leaf]) for point in points))}"
-        for leaf in experiment.swept
-    ]
+    varied = [f"{leaf} {', '.join(dict.fromkeys(flow(run['parameters'][leaf]) for run in runs))}" for leaf in swept]
     return f": {'; '.join(varied)}" if varied else ""

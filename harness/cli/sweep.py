@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from harness.runner.schedule import RunSelection
     from harness.runner.sweep import Summary
     from harness.scene.scene_files import Opened
-    from harness.store.database import Database
 
 DATABASE = "results/results.db"
 
@@ -63,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
+    from harness.cli.comparisons import compare_asked
     from harness.cli.interruption import exit_code
     from harness.cli.progress import Progress
     from harness.runner.preparation import prepare
@@ -90,10 +90,12 @@ def run(arguments: argparse.Namespace) -> int:
                 executor=_executor(arguments),
                 selection=selection,
             )
+            compared = compare_asked(
+                chosen, meshes, database, command=command, fresh=arguments.fresh, quiet=arguments.quiet
+            )
         except KeyboardInterrupt as interruption:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
             return exit_code(interruption)
-        compared = _compare(chosen, meshes, database, command, arguments)
     _print_outcome(summary, arguments)
     for line in compared:
         print(line)
@@ -132,106 +134,6 @@ def _executor(arguments: argparse.Namespace) -> Executor | None:
     from harness.runner.cluster import Cluster
 
     return Cluster(address)
-
-
-# s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
-_COMPARING = 30.0
-
-
-def _compare(
-    experiments: Sequence[Experiment],
-    meshes: Opened,
-    database: Database,
-    command: str,
-    arguments: argparse.Namespace,
-) -> list[str]:
-    """Compare backends where an experiment asks for it, unless that was done; the outcome, a line each pair.
-
-    A library that is wrong is a finding of the report, not a failure of the sweep; `harness compare` exits 1.
-    """
-    import sys
-
-    surveys = [experiment for experiment in experiments if experiment.measure.families]
-    crosschecked = [
-        experiment for experiment in experiments if experiment.measure.compare and experiment not in surveys
-    ]
-    lines = _survey(surveys, meshes, database, command, arguments) if surveys else []
-    if not crosschecked:
-        return lines
-    from harness.cli.crosscheck import (
-        SHOWN,
-        SWEPT,
-        backends_of,
-        cross_check,
-        event_methods,
-        kept,
-        key_of,
-        pairs_of,
-        reductions,
-    )
-    from harness.compare.budget import Budget
-    from harness.compare.document import Known
-    from harness.compare.event_audit import FRAMES
-
-    done = set() if arguments.fresh else database.history.compared()
-    for experiment in crosschecked:
-        names, _ = backends_of(experiment)
-        events = event_methods(experiment)
-        keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs_of(names, events)}
-        wanted = {pair for pair, key in keys.items() if key not in done}
-        if not wanted:
-            continue
-        involved = {name for pair in wanted for name in pair}
-        asked = {query: tuple(name for name in named if name in involved) for query, named in names.items()}
-        left = tuple(name for name in events if (FRAMES, name) in wanted)
-        if not arguments.quiet:
-            all_asked = dict.fromkeys(name for named in asked.values() for name in named)
-            print(f"{experiment.name}: comparing {', '.join((*all_asked, *left))}", file=sys.stderr)
-        budget = Budget(_COMPARING)
-        known: Known = {}
-        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=left):
-            if pair not in wanted:
-                continue
-            found.left_out += [line for line in budget.left_out if line not in found.left_out]
-            rows = reductions(found, meshes, SHOWN, known)
-            database.add_comparison(command, experiment.name, pair, keys[pair], kept(experiment, found, rows))
-            real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
-            lines.append(f"{experiment.name}: {' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
-        lines += [f"{experiment.name}: left out: {line}" for line in budget.left_out]
-    return lines
-
-
-def _survey(
-    experiments: Sequence[Experiment],
-    meshes: Opened,
-    database: Database,
-    command: str,
-    arguments: argparse.Namespace,
-) -> list[str]:
-    """Ask the engines about families of poses, unless that was done; the outcome, a line an engine."""
-    import sys
-
-    from harness.cli.surveying import SWEPT_SECONDS, engines, survey_key, surveyed
-    from harness.compare.budget import Budget
-
-    done = set() if arguments.fresh else database.history.compared()
-    lines = []
-    for experiment in experiments:
-        wanted = [name for name in engines() if survey_key(experiment, meshes, name) not in done]
-        if not wanted:
-            continue
-        if not arguments.quiet:
-            print(f"{experiment.name}: asking {', '.join(wanted)}", file=sys.stderr)
-        seconds = SWEPT_SECONDS if experiment.measure.tier == "default" else None
-        found = surveyed(experiment, meshes, wanted, Budget(seconds))
-        for pair, document in found.documents():
-            key = survey_key(experiment, meshes, pair[0])
-            database.add_comparison(command, experiment.name, pair, key, document)
-            mine = [cell for cell in found.atlas.cells if cell.engine == pair[0]]
-            verdicts, beyond = sum(cell.verdicts for cell in mine), sum(cell.beyond for cell in mine)
-            lines.append(f"{experiment.name}: {pair[0]}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
-        lines += [f"{experiment.name}: left out: {line}" for line in found.found.left_out]
-    return lines
 
 
 def _positive(text: str) -> int:

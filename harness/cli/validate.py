@@ -22,35 +22,79 @@ def run(arguments: argparse.Namespace) -> int:
     """Print a line for every valid file; the problems of the others are raised together."""
     from pathlib import Path
 
+    from harness.experiment.files import find_experiments, name_of
     from harness.experiment.kind import find_truth_declarations
-    from harness.runner.preparation import Prepared, examine
-    from harness.truth.declaration import load_truth
 
     problems: list[Problem] = []
     lacking: list[Problem] = []
     truths = find_truth_declarations(arguments.paths)
     for path in truths:
         try:
-            declaration = load_truth(path)
+            print(f"{path}: {_cases(path)}")
         except NotInstalledError as error:
             lacking += error.problems
         except InputError as error:
             problems += error.problems
-        else:
-            count = sum(family.count for family in declaration.families.values())
-            print(f"{path}: a set of {count} cases in {len(declaration.families)} families")
     left = [path for path in arguments.paths if not _only_truths(Path(path), truths)]
-    found = examine(left, overrides_of(arguments)) if left else Prepared([], {}, [], [])
-    for experiment in found.experiments:
-        points, runs = len(experiment.points), experiment.runs
-        print(f"{experiment.name}: {points} point{'s' * (points != 1)}, {runs} run{'s' * (runs != 1)}")
-    first = {(problem.file, problem.message): problem for problem in reversed([*lacking, *found.lacking])}
+    paths = find_experiments(left) if left else []
+    overrides = overrides_of(arguments) if left else {}
+    valid, found_lacking, found_problems = _examined(paths, overrides)
+    for path in paths:
+        if path in valid:
+            print(f"{name_of(path)}: {valid[path]}")
+    first = {(problem.file, problem.message): problem for problem in reversed([*lacking, *found_lacking])}
     for problem in reversed(first.values()):
         print(f"{problem}; what needs it is passed over")
-    problems += found.problems
+    problems += found_problems
     if problems:
         raise InputError(problems)
     return 0
+
+
+def _cases(path: Path) -> str:
+    """What a valid declaration of cases comes to.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong with it.
+    """
+    from harness.experiment.kept_facts import keep_facts, kept_facts
+
+    if (kept := kept_facts("validate", path, {})) is not None:
+        return str(kept["valid"])
+    from harness.truth.declaration import load_truth
+
+    declaration = load_truth(path)
+    count = sum(family.count for family in declaration.families.values())
+    valid = f"a set of {count} cases in {len(declaration.families)} families"
+    keep_facts("validate", path, {}, declaration.text, declaration.meshes, {}, {"valid": valid})
+    return valid
+
+
+def _examined(paths: list[Path], overrides: dict[str, str]) -> tuple[dict[Path, str], list[Problem], list[Problem]]:
+    """What each valid experiment comes to, what others lack here, and what is wrong with the rest."""
+    from harness.experiment.files import name_of
+    from harness.experiment.kept_facts import keep_facts, kept_facts
+
+    valid: dict[Path, str] = {}
+    if len({name_of(path) for path in paths}) == len(paths):  # else one may be wrong because of another
+        found = ((path, kept_facts("validate", path, overrides)) for path in paths)
+        valid = {path: str(kept["valid"]) for path, kept in found if kept is not None}
+    if len(valid) == len(paths):
+        return valid, [], []
+    from harness.backends.registry import ours
+    from harness.runner.preparation import examine
+
+    prepared = examine([path for path in paths if path not in valid], overrides)
+    for experiment in prepared.experiments:
+        points, runs = len(experiment.points), experiment.runs
+        text = f"{points} point{'s' * (points != 1)}, {runs} run{'s' * (runs != 1)}"
+        valid[experiment.path] = text
+        if all(map(ours, {point.engine.backend for point in experiment.points})):  # a stranger's is asked each time
+            of_file = experiment.source, experiment.mesh_paths, experiment.poses_paths
+            keep_facts("validate", experiment.path, overrides, *of_file, {"valid": text})
+    return valid, prepared.lacking, prepared.problems
 
 
 def _only_truths(path: Path, truths: list[Path]) -> bool:

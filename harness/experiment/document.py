@@ -15,10 +15,10 @@ from typing import Any
 import yaml
 
 from harness.errors import InputError, Problem
+from harness.experiment.kind import LARGEST_FILE
 from harness.experiment.messages import near, printable, shown
 from harness.experiment.scalar import resolve
 
-LARGEST_FILE = 1_000_000  # bytes
 DEEPEST = 50
 MOST_NODES = 250_000  # with every alias written out
 

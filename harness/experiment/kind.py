@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from harness.experiment.document import LARGEST_FILE
+LARGEST_FILE = 1_000_000
+"""bytes that are read of one"""
 
 _SIGN = re.compile(rb"^families\s*:", re.MULTILINE)
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import json
 import os
-import stat
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.criterion import Criterion
 from harness.experiment.declaration import apply_override, check, declare
-from harness.experiment.document import KEY, LARGEST_FILE, read_document, read_value
+from harness.experiment.document import KEY, read_document, read_value
 from harness.experiment.expand import Expansion, expand
 from harness.experiment.experiment import Experiment
-from harness.experiment.kind import is_truth_declaration
+from harness.experiment.files import name_of, no_file, path_kind
+from harness.experiment.kind import LARGEST_FILE
 from harness.experiment.leaves import LEAVES, SECTIONS, mesh_names_in, unknown_key
 from harness.experiment.mesh_location import locate_mesh
 from harness.experiment.messages import near, shown
@@ -26,7 +26,6 @@ from harness.experiment.presentation import Published, ReportSpec
 from harness.experiment.problems import FileProblems, Origin, Override
 from harness.experiment.schema import MOST_RUNS, MeasureSpec, Text
 
-FOLDER = "experiments"
 KEYS = (
     *("title", "question", *SECTIONS, "sweep", "zip", "exclude", "include"),
     *("measure", "expect", "claims", "published", "report"),
@@ -108,76 +107,19 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
     )
 
 
-def name_of(path: Path) -> str:
-    """The name of an experiment: its path below the nearest folder experiments/, else its file's, without .yaml."""
-    absolute = Path(os.path.abspath(path))
-    *folders, file = absolute.parts
-    below = folders[len(folders) - folders[::-1].index(FOLDER) :] if FOLDER in folders else []
-    return "/".join([*below, file.removesuffix(".yaml").removesuffix(".yml")])
-
-
 def _is_text(name: str) -> bool:
     """Whether it came from bytes that are UTF-8."""
     return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
-def find_experiments(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
-    """The experiment files that paths name: files as they are, folders with every *.yaml below them, sorted.
-
-    Raises
-    ------
-    InputError
-        For paths that are not there and folders without an experiment, all of them at once.
-    """
-    found: dict[Path, Path] = {}
-    problems: list[Problem] = []
-    for path in map(Path, paths):
-        kind = _kind(path)
-        if kind == "folder":
-            files = sorted(file for file in path.rglob("*.yaml") if file.is_file() and not is_truth_declaration(file))
-            if not files:
-                problems.append(Problem("there is no experiment (*.yaml) in this folder", str(path)))
-        elif kind is not None:
-            files = [path]
-            if is_truth_declaration(path):
-                message = "this declares a set of cases, no experiment; `harness truth make` makes it"
-                problems.append(Problem(message, str(path)))
-        else:
-            files = []
-            problems.append(Problem(_no_file(path), str(path)))
-        for file in files:
-            found.setdefault(file.resolve(), file)
-    if problems:
-        raise InputError(problems)
-    return list(found.values())
-
-
-def _no_file(path: Path) -> str:
-    guesses = (path.with_name(path.name + ".yaml"), FOLDER / path, FOLDER / path.with_name(path.name + ".yaml"))
-    for guess in guesses if path.name else ():
-        if _kind(guess) == "file":
-            return f'there is no such file or folder; did you mean "{guess}"?'
-    siblings = [file.name for file in path.parent.glob("*.yaml")] if path.parent.is_dir() else []
-    return f"there is no such file or folder{near(path.name, siblings)}"
-
-
-def _kind(path: Path) -> Literal["file", "folder", "other"] | None:
-    """What a path names; nothing, if it cannot be looked at."""
-    try:
-        mode = path.stat().st_mode
-    except (OSError, ValueError):
-        return None
-    return "folder" if stat.S_ISDIR(mode) else "file" if stat.S_ISREG(mode) else "other"
-
-
 def _read(path: Path) -> bytes:
     file = str(path)
-    kind = _kind(path)
-    if kind is None:
-        raise InputError([Problem(_no_file(path), file)])
-    if kind == "folder":
+    named = path_kind(path)
+    if named is None:
+        raise InputError([Problem(no_file(path), file)])
+    if named == "folder":
         raise InputError([Problem("this is a folder; name a file", file)])
-    if kind != "file":
+    if named != "file":
         raise InputError([Problem("this is not a file", file)])
     try:
         with path.open("rb") as stream:

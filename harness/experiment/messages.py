@@ -5,9 +5,10 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable, Mapping
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
-from pydantic import BaseModel, RootModel
+if TYPE_CHECKING:  # of a library whose import takes longer than most commands that print a message
+    from pydantic import BaseModel
 
 _LONGEST = 60
 _PLAIN = re.compile(r"[A-Za-z_][\w./:+-]*")
@@ -153,6 +154,8 @@ def _keys_at(model: Any, location: tuple[str | int, ...]) -> list[str]:
 
 def _models_in(annotation: Any) -> list[type[BaseModel]]:
     """The models that a type is made of; a root model stands for what it holds."""
+    from pydantic import BaseModel, RootModel
+
     if isinstance(annotation, type) and issubclass(annotation, RootModel):
         return _models_in(annotation.model_fields["root"].annotation)
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):

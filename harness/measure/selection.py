@@ -25,11 +25,41 @@ def matching(table: pd.DataFrame, where: Mapping[str, Any]) -> pd.DataFrame:
     return chosen
 
 
-def which(table: pd.DataFrame, where: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
+class Columns:
+    """The columns of a table as JSON has their values, each made when it is first asked for: for many questions."""
+
+    def __init__(self, table: pd.DataFrame) -> None:
+        self._table = table
+        self._made: dict[str, list[Any]] = {}
+
+    def __len__(self) -> int:
+        return len(self._table)
+
+    def __contains__(self, leaf: str) -> bool:
+        return leaf in self._table
+
+    def __getitem__(self, leaf: str) -> list[Any]:
+        if leaf not in self._made:
+            self._made[leaf] = [plain(value) for value in self._table[leaf].tolist()]
+        return self._made[leaf]
+
+
+def which(table: pd.DataFrame | Columns, where: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
     """Of every row, whether it is one of those."""
-    mask = np.ones(len(table), np.bool_)
+    columns = table if isinstance(table, Columns) else Columns(table)
+    mask = np.ones(len(columns), np.bool_)
     for leaf, wanted in where.items():
-        mask &= np.array([_is(value, wanted) for value in table[leaf]], np.bool_) if leaf in table else False
+        if leaf not in columns:
+            mask[:] = False
+            continue
+        known: dict[Any, bool] = {}  # by type too: 1 is not true
+        found = []
+        for value in columns[leaf]:
+            key = type(value), value
+            if key not in known:
+                known[key] = _is(value, wanted)
+            found.append(known[key])
+        mask &= np.array(found, np.bool_)
     return mask
 
 

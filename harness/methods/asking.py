@@ -35,6 +35,7 @@ class _Flight:
 
     Attributes
     ----------
+    observed : whether what the frames answer is looked at
     near : pairs that were near, over all frames asked about
     log : of the answers of every frame, if they are kept
     """
@@ -45,6 +46,7 @@ class _Flight:
     observer: Observer
     folds: Folds
     onsets: Onsets
+    observed: bool
     near: int = 0
     log: NearLog | None = None
 
@@ -83,7 +85,7 @@ class Asking(ABC):
     def found(self, flight: _Flight, times: float) -> dict[str, float]:
         """What was found over all frames, each of those asked standing for so many."""
 
-    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+    def fly(self, law: MotionLaw, *, traced: bool = False, observed: bool = True) -> Outcome:
         """Fly the scene once, from its start; documented as `harness.methods.method.Pipeline.fly`."""
         scene, plan = self._scene, self._plan
         trajectory = trajectory_of(scene, folded=True, turning=plan.keeps("orientations"))
@@ -95,6 +97,7 @@ class Asking(ABC):
             observer,
             Folds(trajectory),
             Onsets(len(scene.bodies)),
+            observed,
             log=self._log(traced),
         )
         self.begin(flight)
@@ -105,6 +108,9 @@ class Asking(ABC):
             self.frame(flight, number)
         end = law.time_of(law.frames)
         require_finite_state(trajectory.positions, trajectory.velocities, end)
+        clocks = clock_metrics(flight.clock, law.frames, end)
+        if not observed:
+            return Outcome(clocks, None)
         counted: dict[str, float] = {
             "frames": law.frames,
             **{name: times * count for name, count in self.counters.items()},
@@ -115,7 +121,7 @@ class Asking(ABC):
         metrics = {
             **counted,
             **rates(counted, len(scene.bodies), law.frames, end),
-            **clock_metrics(flight.clock, law.frames, end),
+            **clocks,
             **({} if scene.poses is not None else conserved(observer)),
             "event_digest": observer.digest.value,
         }
@@ -161,10 +167,13 @@ class NearAsking(Asking):
         trajectory.move_to(time)
         if finder is None:
             flight.clock.lap("pair_seconds")
-            flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            if flight.observed:
+                flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
             return
         found = finder.near(trajectory.positions, trajectory.quaternions)
         flight.clock.lap("pair_seconds")
+        if not flight.observed:
+            return
         pairs, gaps, points = finder.checked(found)
         flight.near += len(pairs)
         if flight.log is not None:
@@ -214,7 +223,8 @@ class ImpactAsking(Asking):
         trajectory.move_to(start)
         if finder is None:
             flight.clock.lap("pair_seconds")
-            flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            if flight.observed:
+                flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
             return
         self._middle.move_to(start + 0.5 * dt)
         motion = FrameMotion(
@@ -228,6 +238,8 @@ class ImpactAsking(Asking):
         )
         found = finder.impacts(motion)
         flight.clock.lap("pair_seconds")
+        if not flight.observed:
+            return
         pairs, times = finder.checked(found)
         order = np.argsort(times, kind="stable")
         hits = np.ones(len(pairs), np.bool_)

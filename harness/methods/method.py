@@ -23,7 +23,7 @@ WarmUp = tuple[str, Callable[[], None]]
 class Pipeline(Protocol):
     """A loaded plan: what the plan keeps, assembled; nothing that it leaves out is there to be asked."""
 
-    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+    def fly(self, law: MotionLaw, *, traced: bool = False, observed: bool = True) -> Outcome:
         """Fly the scene once, from its start.
 
         Parameters
@@ -31,6 +31,7 @@ class Pipeline(Protocol):
         law : MotionLaw
             Of the response that the plan was made for, and no longer than that.
         traced : keep every hit
+        observed : count and measure what is outside of the clocks; else the outcome has clocks alone
         """
 
 

@@ -146,13 +146,14 @@ class EventDriven:
         self._scene, self._plan, self._tolerance = scene, plan, tolerance
         self._form = Form(scene, surface=plan.keeps("mesh_search")) if plan.keeps("orientations") else None
 
-    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+    def fly(self, law: MotionLaw, *, traced: bool = False, observed: bool = True) -> Outcome:
         """Fly the scene for `law.duration`, event by event; what is due at that very time still happens.
 
         Parameters
         ----------
         law : MotionLaw
         traced : keep every event
+        observed : without, the run's clock alone
 
         Returns
         -------
@@ -161,7 +162,7 @@ class EventDriven:
         """
         scene, plan = self._scene, self._plan
         recorded = plan.keeps("recording")
-        samples = _Samples(scene, plan, law)
+        samples = _Samples(scene, plan, law) if observed else None
         clock = Clock("run_seconds")
         simulation = self._start(law, record=traced or recorded, states=recorded)
         clock.lap("run_seconds")
@@ -170,12 +171,16 @@ class EventDriven:
             until = law.duration * sample / SAMPLES
             simulation.advance(until)
             clock.lap("run_seconds")
-            samples.take(simulation, until)
-        counted = simulation.counters
-        metrics: dict[str, float] = {**counted, **clock.metrics(), **samples.metrics(simulation)}
+            if samples is not None:
+                samples.take(simulation, until)
+        clocks = clock.metrics()
         for kind in ("", "_elapsed"):
-            if metrics[f"run_seconds{kind}"] > 0.0:
-                metrics[f"simulated_per_second{kind}"] = law.duration / metrics[f"run_seconds{kind}"]
+            if clocks[f"run_seconds{kind}"] > 0.0:
+                clocks[f"simulated_per_second{kind}"] = law.duration / clocks[f"run_seconds{kind}"]
+        if samples is None:
+            return Outcome(clocks, None)
+        counted = simulation.counters
+        metrics: dict[str, float] = {**counted, **clocks, **samples.metrics(simulation)}
         if counted["events"]:
             metrics["predictions_per_event"] = counted["predictions"] / counted["events"]
             metrics["pair_tests_per_event"] = counted["pair_tests"] / counted["events"]

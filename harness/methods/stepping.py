@@ -78,22 +78,23 @@ class Stepping:
     def __init__(self, scene: Scene, plan: Plan, detector: Detector | None) -> None:
         self._scene, self._plan, self._detector = scene, plan, detector
 
-    def fly(self, law: MotionLaw, *, traced: bool = False) -> Outcome:
+    def fly(self, law: MotionLaw, *, traced: bool = False, observed: bool = True) -> Outcome:
         """Fly the scene once, from its start: the counters, clocks and errors of a stepped run.
 
         Parameters
         ----------
         law : MotionLaw
         traced : keep every hit
+        observed : without, clocks alone
         """
         scene, plan, detector = self._scene, self._plan, self._detector
         folded, recorded = law.response == "none", plan.keeps("recording")
         trajectory = trajectory_of(scene, folded=folded, turning=plan.keeps("orientations"))
-        observer = Observer(scene, trajectory, penetration=plan.keeps("penetration"), traced=traced)
+        observer = Observer(scene, trajectory, penetration=observed and plan.keeps("penetration"), traced=traced)
         response, states = _response(scene, trajectory, law, stateful=traced and recorded)
         course = CourseLog(trajectory.positions, trajectory.velocities) if recorded and response else None
         steps = _steps(scene, plan, trajectory, detector, response)
-        observe = _observation(observer, trajectory, response, course, states)
+        observe = _observation(observer, trajectory, response, course, states) if observed else _unobserved
         clock = Clock(*PHASES)
 
         def fly(number: int) -> _Frame:
@@ -114,6 +115,9 @@ class Stepping:
             tests = _first_frames(fly, law.frames, observer, detector)
         end = law.time_of(law.frames)
         require_finite_state(trajectory.positions, trajectory.velocities, end)
+        clocks = clock_metrics(clock, law.frames, end)
+        if not observed:
+            return Outcome(clocks, None)
         counted: dict[str, float] = {
             "frames": law.frames,
             **tests,
@@ -126,7 +130,7 @@ class Stepping:
         metrics = {
             **counted,
             **rates(counted, len(scene.bodies), law.frames, end),
-            **clock_metrics(clock, law.frames, end),
+            **clocks,
             **_errors(scene, observer, response, plan),
         }
         trace = observer.trace(end, counted, states=None if states is None else states.states())
@@ -206,6 +210,10 @@ def _steps(
     if not plan.keeps("response"):
         return [*steps, ("box_seconds", walls_alone)]
     return [*steps, ("response_seconds", respond), ("box_seconds", walls_and_redirect)]
+
+
+def _unobserved(frame: _Frame) -> None:
+    """Nothing is looked at."""
 
 
 def _observation(

@@ -10,11 +10,11 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from harness.replay.document import Fact, document, view_box
-from harness.replay.still import still
+from harness.replay.kept_still import still_of
 from harness.store.recording import Recording
 
 # Each imports only from those before it; `main` starts the page.
@@ -65,7 +65,7 @@ def replay_page(
 
 def still_text(recording: Recording) -> str:
     """The still picture, a PNG, in base64."""
-    return base64.b64encode(still(recording)).decode("ascii")
+    return base64.b64encode(still_of(recording)).decode("ascii")
 
 
 def live_page(title: str, settings: Sequence[Setting], columns: Sequence[str]) -> str:
@@ -117,10 +117,7 @@ def _page(
     settings: tuple[Setting, ...] = (),
     columns: tuple[str, ...] = (),
 ) -> str:
-    environment = Environment(
-        loader=PackageLoader("harness.replay", "viewer"), autoescape=True, undefined=StrictUndefined
-    )
-    return environment.get_template("page.html.j2").render(
+    return _template().render(
         title=title,
         subtitle=subtitle,
         facts=facts,
@@ -130,9 +127,22 @@ def _page(
         recording=recording,
         settings=settings,
         columns=columns,
-        style=Markup(_source("style.css")),
+        style=Markup(_style()),
         script=Markup(_script()),
     )
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=PackageLoader("harness.replay", "viewer"), autoescape=True, undefined=StrictUndefined
+    )
+    return environment.get_template("page.html.j2")
+
+
+@cache
+def _style() -> str:
+    return _source("style.css")
 
 
 @cache

@@ -17,9 +17,9 @@ from trimesh.creation import icosphere
 
 from harness.arrays import Floats
 from harness.replay.document import start_positions, view_box
+from harness.replay.kept_still import HEIGHT, WIDTH
 from harness.store.recording import Recording, Surface
 
-WIDTH, HEIGHT = 800, 500
 _OVERSAMPLING = 2  # painted at so many times the size
 _MOST_TRIANGLES = 24_000
 _TURN, _TILT, _FIELD = 0.62, 0.42, 0.62  # as the viewer's first view, rad
@@ -39,9 +39,17 @@ def still(recording: Recording) -> bytes:
     if len(recording):
         _draw_bodies(draw, recording, eye, axes)
     buffer = io.BytesIO()
-    small = image.resize((WIDTH, HEIGHT), Image.Resampling.BOX)
-    small.quantize(_COLOURS, method=Image.Quantize.FASTOCTREE).save(buffer, format="PNG", optimize=True)
+    small = _scaled_down(image)
+    # at the usual level of compression: three more bytes in a hundred than at the highest, for a third of its time
+    small.quantize(_COLOURS, method=Image.Quantize.FASTOCTREE).save(buffer, format="PNG")
     return buffer.getvalue()
+
+
+def _scaled_down(image: Image.Image) -> Image.Image:
+    """At the size of the picture: the mean of each square of pixels."""
+    # all of it is opaque or black and transparent, so that colours need not be multiplied by their opacity first
+    painted = Image.frombuffer("RGBa", image.size, image.tobytes(), "raw", "RGBa", 0, 1)
+    return painted.reduce(_OVERSAMPLING).convert("RGBA")
 
 
 def _camera(half: Floats) -> tuple[Floats, Floats]:

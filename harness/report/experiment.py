@@ -150,5 +150,6 @@ class ExperimentPage:
 
 def csv(runs: pd.DataFrame) -> str:
     """The run table as CSV, without the columns that nothing reports."""
-    kept = [name for name in runs.columns if name not in METRICS or runs[name].notna().any()]
+    reported = runs.notna().any()
+    kept = [name for name in runs.columns if name not in METRICS or reported[name]]
     return str(runs[kept].to_csv(index=False, lineterminator="\n"))

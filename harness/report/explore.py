@@ -10,8 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from harness.measure.metrics import METRICS
 from harness.report.experiment import ExperimentPage
 from harness.report.point import MeasuredPoint
@@ -107,9 +105,9 @@ def _row(page: ExperimentPage, point: MeasuredPoint, columns: Sequence[ExploredC
 
 def _status(point: MeasuredPoint) -> str:
     """How its runs ended, and where they did, whether they may be believed."""
-    if point.runs.empty:
+    if not point.statuses:
         return "not run"
-    ended = sorted(set(point.runs["status"]) - {"ok"})
+    ended = sorted(point.statuses - {"ok"})
     if ended:
         return ", ".join(ended)
     return "wrong" if point.is_wrong else "disputed" if point.disputed else "ok"
@@ -123,10 +121,9 @@ def _leaf(parameters: Mapping[str, Any], column: ExploredColumn) -> ExploredEntr
 
 
 def _metric(point: MeasuredPoint, column: ExploredColumn) -> ExploredEntry:
-    values = point.values(column.name)
-    if not len(values):
+    if not len(point.values(column.name)):
         return ExploredEntry("")
-    median = float(np.median(values))
+    median = point.median(column.name)
     return _number(quantity(median, column.unit or "1"), median)
 
 

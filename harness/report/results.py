@@ -33,7 +33,11 @@ class Results:
     @cached_property
     def runs(self) -> pd.DataFrame:
         """The run table of all experiments."""
-        return runs(self.database)
+        table = runs(self.database)
+        texts = list(table.select_dtypes("string"))
+        # as plain objects: rows of those are taken at a fraction of the cost
+        plain: pd.DataFrame = table.astype(dict.fromkeys(texts, object)).copy()
+        return plain
 
     @cached_property
     def records(self) -> list[ExperimentRecord]:

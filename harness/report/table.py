@@ -101,9 +101,9 @@ def measured_summary(found: Summary | None, unit: Scale) -> Entry:
 
 def failure(point: MeasuredPoint | None) -> Entry:
     """What stands where a number should: how the runs ended, or that there is none."""
-    if point is None or point.runs.empty:
+    if point is None or not point.statuses:
         return Entry(MISSING if point is None else "not run")
-    ended = sorted(set(point.runs["status"]) - {"ok"})
+    ended = sorted(point.statuses - {"ok"})
     return Entry("", flag=", ".join(ended)) if ended else Entry(MISSING)
 
 

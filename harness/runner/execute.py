@@ -76,13 +76,14 @@ def execute(
     clock.lap("setup_seconds")
     if not (traced or recorded):
         # what it keeps from flight to flight must not be counted, so that another is loaded for the run
-        warm(pipeline.fly, law)
+        warm(partial(pipeline.fly, observed=False), law)
         del pipeline
         pipeline = method.load(scene, plan)
     # what a stepped run watches is outside of its clocks; an event-driven one would keep its events within them
     watched = traced or recorded or (point.reference is not None and is_stepped(point))
     fly = partial(pipeline.fly, law, traced=watched)
-    outcome, flights = (fly(), 1) if traced or recorded else fly_long_enough(fly)
+    again = partial(pipeline.fly, law, observed=False)
+    outcome, flights = (fly(), 1) if traced or recorded else fly_long_enough(fly, again)
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
     if recorded:
         return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome))

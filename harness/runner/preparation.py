@@ -12,7 +12,8 @@ from harness.backends.registry import names
 from harness.backends.statement import missing
 from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.experiment import Experiment, Point
-from harness.experiment.load import find_experiments, load
+from harness.experiment.files import find_experiments
+from harness.experiment.load import load
 from harness.experiment.messages import listed, near, shown
 from harness.measure.metrics import METRICS, ON_DEMAND
 from harness.methods.stages import StageError

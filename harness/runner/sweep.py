@@ -20,6 +20,7 @@ from harness.measure.metrics import METRICS
 from harness.measure.noise import Control, controls_of
 from harness.measure.verdicts import expected_refusals, judge
 from harness.motion.hits import Trace
+from harness.runner.compilation import compile_ahead
 from harness.runner.estimate import Estimate
 from harness.runner.executor import Executor, FinishedJob, LocalExecutor
 from harness.runner.key import point_key
@@ -186,6 +187,8 @@ def sweep(
     listed = {e.name: database.list_experiment(number, **_listing(e, work, meshes)) for e in experiments}
     summary = Summary(work.schedule.kept, lacking=list(work.lacking.values()))
     progress.begin(work.schedule.jobs, work.estimate)
+    if executor is None:
+        compile_ahead([job.point for job in work.schedule.jobs])
     with executor or LocalExecutor() as opened:
         for finished in opened.run(work.schedule.jobs, meshes, progress.before):
             _keep(database, number, finished)

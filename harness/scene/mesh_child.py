@@ -15,16 +15,18 @@ import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from harness.child_process import Channel, Child, Ending
 from harness.errors import InputError, Problem
 from harness.process_limits import isolate, limit
 from harness.scene.mesh import Mesh
 from harness.scene.mesh_cache import arrays_of, facts_of, keep_mesh, kept_mesh, key_of, mesh_of
 from harness.scene.recorded_poses import RecordedPoses
+
+if TYPE_CHECKING:
+    from harness.child_process import Channel, Ending
 
 GIB = 1024**3
 # For the imports, on a machine with other things to do; nothing of a stranger's is read before.
@@ -93,6 +95,8 @@ def _read_some(
     meshes: list[Path], poses: list[Path], memory: int, timeout: float
 ) -> dict[Path, Mesh | RecordedPoses | str]:
     """One child's work, up to and with the file that ends it; at least the first."""
+    from harness.child_process import Child  # only where something is to be read
+
     results: dict[Path, Mesh | RecordedPoses | str] = {}
     paths = [*meshes, *poses]
     with tempfile.TemporaryDirectory(prefix="harness-meshes-") as folder:
@@ -183,6 +187,8 @@ def _sent(part: Mesh | RecordedPoses, file: Path) -> dict[str, object]:
 
 
 if __name__ == "__main__":
+    from harness.child_process import Channel
+
     isolate()
     _serve(
         Channel(int(sys.argv[1])),

@@ -68,6 +68,7 @@ class TruthDeclaration(NamedTuple):
     families : by name, those that it declares
     meshes : the file that each name of a mesh means
     problems : of the file, so that a mesh can be found wrong at its place
+    text : of the file
     """
 
     path: Path
@@ -75,6 +76,7 @@ class TruthDeclaration(NamedTuple):
     families: dict[str, FamilySpec]
     meshes: dict[str, Path]
     problems: FileProblems
+    text: str
 
 
 def load_truth(path: Path) -> TruthDeclaration:
@@ -110,4 +112,4 @@ def load_truth(path: Path) -> TruthDeclaration:
             except InputError as error:
                 problems.add(("families", name, "meshes", place), str(error))
     problems.raise_any()
-    return TruthDeclaration(path, spec, families, meshes, problems)
+    return TruthDeclaration(path, spec, families, meshes, problems, text.decode("utf-8-sig"))

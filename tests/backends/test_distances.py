@@ -180,6 +180,7 @@ def test_coal_is_as_exact_as_it_is_asked_to_be():
     assert errors[0] < 4e-2
 
 
+@pytest.mark.slow
 def test_mujoco_makes_room_for_as_many_contacts_as_there_are():
     pytest.importorskip("mujoco")
     backend, scene = registry.create("mujoco"), random_scene("sphere", 450, 12.0)

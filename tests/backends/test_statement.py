@@ -8,6 +8,7 @@ import uuid
 import pytest
 
 from harness.backends import registry
+from harness.backends.registry import BackendError
 from harness.backends.statement import Statement, _asked, approximation, missing, statement
 from harness.cli.main import main
 from tests.runner.hostile_plugins import MARK, install, left_behind
@@ -57,6 +58,7 @@ def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, ca
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("way", "missing"), [("leaves a process", None), ("leaves a process and exits", WAYS["exits"])]
 )
@@ -93,6 +95,27 @@ def test_one_of_ours_is_asked_once_for_all_commands_until_something_is_installed
     file.write_text("{")
     _asked.cache_clear()
     assert statement("trimesh") == said
+
+
+def test_that_one_of_ours_lacks_a_package_is_known_until_there_is_one(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+    def create(name):
+        why = BackendError(name, "not installed; pip install drake")
+        raise why from ModuleNotFoundError("No module named no_library", name="there_is_no_such_library.a")
+
+    with monkeypatch.context() as changed:
+        changed.setattr(registry, "create", create)
+        _asked.cache_clear()
+        said = statement("drake")
+        assert (said.installed, said.missing) == (False, "not installed; pip install drake")
+    monkeypatch.setattr("harness.backends.statement._say", lambda _: Statement("asked again"))
+    _asked.cache_clear()
+    assert statement("drake") == said
+    monkeypatch.setattr("harness.backends.statement.find_spec", lambda _: object())
+    _asked.cache_clear()
+    assert statement("drake").missing == "asked again"
+    _asked.cache_clear()
 
 
 def test_a_list_names_all_the_others_beside_one_that_exits(installed, capsys):

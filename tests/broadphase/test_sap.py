@@ -282,6 +282,7 @@ def test_large_bodies_do_not_make_small_ones_test_more_of_each_other(ratio):
     assert mixed.pair_tests < many * many / 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [100, 1000])
 @pytest.mark.parametrize("packing", [0.05, 0.3])
 def test_one_large_body_in_a_hundred_takes_a_tenth_of_the_tests_of_equal_bodies_as_densely_packed(ratio, packing):

@@ -27,7 +27,7 @@ class SharedServers:
         pass
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def servers():
     with Servers() as opened:
         yield opened

@@ -124,6 +124,7 @@ def test_a_control_is_run_where_methods_are_compared_and_is_no_row(which, capsys
     assert "twice" not in sweep(capsys, "--set", "repeats=5", "--set", "algorithm=tree")  # one method
 
 
+@pytest.mark.slow
 def test_an_experiment_that_takes_other_paths_says_the_command_that_goes_on(which, capsys, monkeypatch):
     monkeypatch.setattr("sys.argv", ["harness", "sweep", "which.yaml", "--set", "dt=1/30 "])
     monkeypatch.setattr("harness.cli.progress.Progress.before", interrupt)

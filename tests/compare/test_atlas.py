@@ -136,6 +136,7 @@ def test_an_engine_that_sees_no_overlap_is_wrong_about_all_of_them_and_fcl_about
     assert all(cell.deepest > 0.1 for cell in found.cells if cell.engine == name)
 
 
+@pytest.mark.slow
 def test_one_that_misses_overlaps_along_a_vertex_direction_is_found_by_the_aligned_family(tmp_path, monkeypatch):
     from tests.compare import liars
 

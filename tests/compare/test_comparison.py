@@ -115,6 +115,7 @@ def test_a_backend_that_hangs_over_its_first_scene_is_not_asked_about_others(def
     assert said == ["fcl, hangs-loading: 3 bodies, shape sphere"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "how"), [("crashes-loading", "SIGSEGV"), ("raises-loading", "no luck")])
 def test_a_backend_that_fails_over_every_scene_is_named_once_and_the_comparison_fails(
     name, how, defective, tmp_path, capsys

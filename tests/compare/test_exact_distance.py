@@ -13,6 +13,7 @@ from tests.conftest import cube_mesh
 from tests.narrowphase.meshes import turns
 
 
+@pytest.mark.slow
 def test_the_judge_finds_the_rational_distance_of_random_and_degenerate_pairs():
     assert wrong_pairs(2 * len(FORMS)) == []
 

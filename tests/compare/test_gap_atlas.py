@@ -25,7 +25,9 @@ def found(query, shape, engines, families=FAMILIES, count=4):
 
 
 @pytest.mark.parametrize("query", ["distance", "tolerance"])
-@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+@pytest.mark.parametrize(
+    "shape", ["hull", *(pytest.param(shape, marks=pytest.mark.slow) for shape in ("sphere", "mesh"))]
+)
 def test_the_kernels_and_fcl_are_never_off_by_more_than_their_tolerance(query, shape):
     cells = found(query, shape, ["fcl", OWN])
     assert len(cells) == 6

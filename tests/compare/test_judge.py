@@ -64,6 +64,7 @@ def test_coordinates_far_from_the_origin_lose_nothing():
         assert two(shape, [width - 1e-9, 0, 0], at=1e6).touching
 
 
+@pytest.mark.slow
 def test_convex_surfaces_cross_where_their_hulls_touch():
     scene = random_scene("hull", 30, 3.0, seed=4)
     surfaces = replace(scene, shape="mesh")

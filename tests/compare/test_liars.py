@@ -10,6 +10,16 @@ from harness.compare.poses import Pose, PoseSet, flown
 from tests.compare.liars import BY_CHANGE, BY_CLAIM, BY_CONTRACT, LIARS, install
 from tests.conftest import cube_mesh, random_scene
 
+# Left out of the quick tests, which keep one or two of each kind.
+SLOW = (
+    *("drops-at-random", "random-verdicts", "drops-neighbours", "last-frame", "halves-hulls", "inflates-by-1e-3"),
+    *("spheres-for-all", "sees-all", "doubles", "unsorted", "turned-round", "out-of-range"),
+)
+
+
+def marked(names):
+    return [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in names]
+
 
 @pytest.fixture
 def liar(tmp_path, monkeypatch):
@@ -42,13 +52,14 @@ def named(found):
     return {case.wrong for case in found.cases + found.shared} | {failure.backend for failure in found.failures}
 
 
-@pytest.mark.parametrize("name", [name for name in LIARS if name not in ("sleeps", "caches")])
+@pytest.mark.parametrize("name", marked(name for name in LIARS if name not in ("sleeps", "caches")))
 def test_a_liar_is_caught_and_nobody_else_is_accused(name, judged):
     found = judged(name)
     assert named(found) == {name}
     assert not found.passed
 
 
+@pytest.mark.slow
 def test_one_that_takes_near_poses_for_the_same_is_caught_at_the_small_steps(liar):
     pose_set = next(iter(hard_poses("hull", (cube_mesh(),))))
     found = compare([pose_set], ["fcl", liar("caches")])
@@ -64,7 +75,7 @@ def test_one_that_does_not_answer_is_given_up_and_named(liar):
     assert (len(found.failures), len(said)) == (5, 1)
 
 
-@pytest.mark.parametrize("name", BY_CONTRACT)
+@pytest.mark.parametrize("name", marked(BY_CONTRACT))
 def test_a_breach_of_the_contract_names_the_backend(name, judged):
     reasons = {failure.reason for failure in judged(name).failures}
     told = "read-only" if name == "writes-poses" else f'backend "{name}"'
@@ -72,15 +83,15 @@ def test_a_breach_of_the_contract_names_the_backend(name, judged):
     assert all(told in reason for reason in reasons)
 
 
-@pytest.mark.parametrize("name", BY_CLAIM)
+@pytest.mark.parametrize("name", marked(BY_CLAIM))
 def test_what_a_backend_claims_is_bounded(name, judged):
     assert [failure.kind for failure in judged(name).failures if failure.pose == LOADING] == ["claim"]
 
 
-@pytest.mark.parametrize(("name", "kind"), BY_CHANGE.items())
-def test_a_verdict_that_changes_is_called_what_it_is(name, kind, judged):
+@pytest.mark.parametrize("name", marked(BY_CHANGE))
+def test_a_verdict_that_changes_is_called_what_it_is(name, judged):
     failures = judged(name).failures
-    assert kind in {failure.kind for failure in failures}
+    assert BY_CHANGE[name] in {failure.kind for failure in failures}
     assert all(len(failure.bodies) == 2 for failure in failures)
 
 

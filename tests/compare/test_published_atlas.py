@@ -22,6 +22,7 @@ def test_plain_fractions_prove_every_accusation():
         assert proven(row), (row["engine"], row["family"])
 
 
+@pytest.mark.slow
 def test_a_certificate_that_is_changed_proves_nothing():
     for row in ROWS:
         changed = deepcopy(row)

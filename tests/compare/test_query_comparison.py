@@ -19,6 +19,7 @@ from tests.conftest import cube_mesh, make_bodies, random_scene
 
 DISTANCE, NEAR, IMPACT = (Question(query, 0.2) for query in ("distance", "tolerance", "impact"))
 HONEST = ("fcl", "fcl/grid")
+QUICK = ("gaps-too-wide", "early")  # one a question
 
 
 @pytest.fixture
@@ -46,7 +47,9 @@ def test_honest_methods_are_not_accused(question, shape):
     assert found.checked[0].verdicts > 0
 
 
-@pytest.mark.parametrize("name", QUERY_LIARS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in QUERY_LIARS]
+)
 def test_a_liar_is_caught_and_nobody_else_is_accused(name, liar):
     question = DISTANCE if name in ("gaps-too-wide", "loses-near-pairs") else IMPACT
     found = compare([crowd(question)], ("fcl", liar(name)))
@@ -138,6 +141,7 @@ def test_budget_and_every_are_said_with_the_question(tmp_path, capsys):
     assert "distance within 0.5 m, 5 bodies, shape sphere: not asked, 1e-06 s were spent" in document["left_out"]
 
 
+@pytest.mark.slow
 def test_a_method_that_cannot_be_asked_is_named(tmp_path, capsys):
     path = tmp_path / "hit.yaml"
     path.write_text(

@@ -11,7 +11,8 @@ import pytest
 
 from harness.errors import InputError
 from harness.experiment.experiment import Experiment
-from harness.experiment.load import find_experiments, load, name_of
+from harness.experiment.files import find_experiments, name_of
+from harness.experiment.load import load
 
 Read = Callable[..., Experiment]
 ProblemsIn = Callable[..., list[str]]

@@ -54,7 +54,7 @@ def judged(scene, found):
     return [touching[0], next(pair for pair in unlike if pair not in found)]
 
 
-@pytest.mark.parametrize("shape", ["hull", "mesh"])
+@pytest.mark.parametrize("shape", ["hull", pytest.param("mesh", marks=pytest.mark.slow)])
 def test_all_methods_find_the_same_pairs_of_several_meshes_and_the_judge_agrees(shape):
     for seed in range(4):
         scene = mixture(shape, seed)
@@ -96,7 +96,7 @@ def test_hits_of_several_meshes_are_predicted_where_frames_see_them(shape):
         assert any(other == pair and time - 2.2e-3 <= at <= time for at, other in onsets["fcl/predictive"])
 
 
-@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+@pytest.mark.parametrize("shape", ["sphere", "hull", pytest.param("mesh", marks=pytest.mark.slow)])
 def test_an_ignored_pair_is_found_by_no_method_and_all_others_are(shape):
     scene = mixture(shape, 1)
     expected = detected("fcl", scene)

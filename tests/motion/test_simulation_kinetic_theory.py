@@ -58,6 +58,7 @@ def test_energy_stays_over_a_million_collisions():
     assert abs(simulation.kinetic_energy / before - 1) <= 1e-12
 
 
+@pytest.mark.slow
 def test_speeds_become_maxwells_for_a_fixed_energy():
     simulation = fluid(1000, 0.2, melt=100)
     moments = []
@@ -101,6 +102,7 @@ def test_cells_and_lists_tell_the_same_story(packing):
     assert np.allclose(one.events["time"], other.events["time"], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_work_for_an_event_does_not_grow_with_the_crowd():
     counts = np.array([1000, 8000, 64000])
     work = []

@@ -105,6 +105,7 @@ def test_hulls_overlap_at_every_instant_of_a_contact_and_at_none_between(seed, n
             assert found.verdict == expected or (inside and found.lower <= 1.25e-7)
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES))
 def test_surfaces_touch_only_while_their_hulls_do(seed, name):

@@ -56,6 +56,7 @@ def test_a_surface_that_is_partly_inside_out_has_no_field_and_proves_nothing():
     assert len(clearance_field(replace(cube, faces=faces)).values) == 0
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES), st.sampled_from([0.0, 3.0, 10.0]))
 def test_surfaces_touch_for_as_long_as_is_proved(seed, name, spin):

@@ -109,6 +109,7 @@ def test_the_ratio_to_the_next_method_has_its_interval(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_with_fewer_than_five_repeats_no_method_is_the_fastest_at_an_error(tmp_path):
     few = Invented(**{**vars(ACCURACY), "swept": {"algorithm": ["brute-force", "grid"], "dt": STEPS[:3]}, "repeats": 3})
     html = dict(render(write(tmp_path / "x.db", [few])))["accuracy.html"]
@@ -167,6 +168,7 @@ def test_in_free_flight_the_page_says_how_long_the_exact_motion_is_followed(tmp_
     assert "divergence time" in text.lower()
 
 
+@pytest.mark.slow
 def test_without_a_reference_there_is_no_page(tmp_path):
     database = write(tmp_path / "x.db", [Invented(**{**vars(ACCURACY), "reference": None})])
     pages = dict(render(database))
@@ -174,6 +176,7 @@ def test_without_a_reference_there_is_no_page(tmp_path):
     assert "accuracy.html" not in pages["index.html"]
 
 
+@pytest.mark.slow
 def test_runs_that_failed_leave_what_there_is(tmp_path):
     def fate(parameters, repeat, metrics):
         invented(parameters, repeat, metrics)

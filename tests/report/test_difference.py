@@ -185,7 +185,7 @@ def test_below_five_points_a_quarter_is_allowed_for_what_drifts(results, capsys)
     assert (document["drift"], document["floor"]) == (None, 0.25)
 
 
-@pytest.mark.parametrize("repeats", [1, 2, 3, 4])
+@pytest.mark.parametrize("repeats", [1, *(pytest.param(repeats, marks=pytest.mark.slow) for repeats in (2, 3)), 4])
 def test_fewer_than_five_pairs_call_no_point_slower_and_their_span_is_a_range(results, capsys, repeats):
     results(EIGHT, repeats=repeats)
     path = results({count: 1.0 + count for count in EIGHT}, repeats=repeats)

@@ -3,6 +3,7 @@
 import re
 from itertools import pairwise
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -20,6 +21,7 @@ def label_heights(svg, labels):
     return sorted(found[label] for label in labels)
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(st.lists(st.floats(1.0, 1000.0), min_size=2, max_size=12))
 def test_labels_at_line_ends_never_overlap(ends):

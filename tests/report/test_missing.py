@@ -78,6 +78,7 @@ def test_a_run_that_experiments_share_is_missing_once(tmp_path):
     assert "8 of 12 runs are missing" in of(path)
 
 
+@pytest.mark.slow
 def test_the_pages_of_a_sweep_stopped_at_a_fifth_have_nothing_broken_and_say_what_is_missing(tmp_path):
     cases, others = (
         [f"{kind}-{number}" for number in range(count)] for kind, count in (("stability/case", 9), ("other", 11))

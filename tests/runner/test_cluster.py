@@ -17,7 +17,12 @@ from harness.cli.main import main
 from harness.measure.metrics import METRICS
 from harness.store import tables
 
-pytest.importorskip("distributed")
+
+@pytest.fixture(autouse=True)
+def distributed():
+    """It takes a second and a half to import, so that only who runs these tests does."""
+    pytest.importorskip("distributed")
+
 
 EXPERIMENT = """
 title: On a cluster

@@ -149,6 +149,7 @@ def test_a_run_has_one_thread_and_one_core(spheres, servers):
     assert report.conditions["core"] in os.sched_getaffinity(0)
 
 
+@pytest.mark.slow
 def test_what_a_run_met_is_told(spheres, servers):
     report = run_one(spheres(), servers)
     assert {"load", "seconds", "flights"} <= report.conditions.keys() <= CONDITIONS.keys()
@@ -181,12 +182,14 @@ def test_leaving_the_servers_ends_them(spheres):
         os.kill(process, 0)
 
 
+@pytest.mark.slow
 def test_a_placement_that_cannot_fit_is_rejected_with_the_numbers(spheres, servers):
     report = run_one(spheres(count=500), servers)
     assert report.status == "rejected"
     assert "overlap" in report.reason
 
 
+@pytest.mark.slow
 def test_a_scene_beyond_the_memory_is_refused_before_anything_is_allocated(spheres, servers):
     report = run_one(spheres(count=10**9), servers)
     assert report.status == "rejected"

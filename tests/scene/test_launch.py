@@ -40,7 +40,7 @@ def test_bodies_are_inside_and_apart_or_the_reason_is_said(radii, packing, shape
         assert_placed(positions, radii, box)
 
 
-@pytest.mark.parametrize("packing", [0.01, 0.2, 0.3, 0.36, 0.49, 0.6])
+@pytest.mark.parametrize("packing", [0.01, 0.2, pytest.param(0.3, marks=pytest.mark.slow), 0.36, 0.49, 0.6])
 def test_a_thousand_equal_bodies_are_placed_at_any_packing(packing):
     radii = np.full(1000, 0.5)
     box = box_for(radii, packing)
@@ -127,6 +127,7 @@ def test_where_overlap_is_allowed_only_the_box_limits():
         place(np.full(1, 0.6), box, np.random.default_rng(1), overlap=True)
 
 
+@pytest.mark.slow
 @given(st.integers(1, 500), st.tuples(*[st.floats(0, 12)] * 3))
 @settings(max_examples=80, deadline=None)
 def test_lattice_sites_are_in_their_room_and_a_spacing_apart(count, sides):

@@ -45,10 +45,15 @@ def turning_pair(solid):
 
 CLOSED_FORMS = [
     sphere_pair(),
-    face_pair(HULL),
     *(
         pytest.param(*pair, marks=pytest.mark.slow)
-        for pair in (face_pair(MESH), face_pair(MESH, spin=7.0), turning_pair(MESH), turning_pair(HULL))
+        for pair in (
+            face_pair(HULL),
+            face_pair(MESH),
+            face_pair(MESH, spin=7.0),
+            turning_pair(MESH),
+            turning_pair(HULL),
+        )
     ),
 ]
 

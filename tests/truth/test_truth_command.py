@@ -60,6 +60,7 @@ def test_what_was_made_is_as_many_as_declared_and_every_case_is_proven_anew(made
     assert capsys.readouterr().out == "12 of 12 cases are proven\n"
 
 
+@pytest.mark.slow
 def test_a_bracket_moved_by_a_millionth_of_a_second_is_refused_with_its_line(made, tmp_path, capsys):
     rows = rows_of(made)
     place = first_touching(rows)

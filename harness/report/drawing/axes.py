@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from matplotlib.ticker import MaxNLocator
-
 from harness.report.drawing import palette
 from harness.report.drawing.canvas import Canvas
 from harness.report.quantity import number, power_of_ten
@@ -70,8 +68,7 @@ def round_numbers(bounds: tuple[float, float], logarithmic: bool, most: int) -> 
     """Round numbers within bounds: 1, 2, 5 of every power of ten, or fewer of each where that is too many."""
     low, high = bounds
     if not logarithmic:
-        found = MaxNLocator(most - 1, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-        return [float(value) for value in found if low <= value <= high]
+        return even_numbers(low, high, most - 1)
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     inside: list[float] = []
     for steps in ((1, 2, 5), (1, 3), (1,)):
@@ -80,6 +77,28 @@ def round_numbers(bounds: tuple[float, float], logarithmic: bool, most: int) -> 
         if len(inside) <= most:
             return inside
     return inside[:: math.ceil(len(inside) / most)]
+
+
+def even_numbers(low: float, high: float, most: int, steps: Sequence[float] = (1, 2, 2.5, 5)) -> list[float]:
+    """The multiples within bounds of a round step, as matplotlib's `MaxNLocator` chooses it.
+
+    It is the smallest of these steps, times powers of ten, that makes no more than so many intervals; or a smaller one,
+    where that leaves less than two numbers.
+
+    >>> even_numbers(0.3, 9.0, 6), even_numbers(-0.12, 1.18, 7, (1, 2, 5))
+    ([2.0, 4.0, 6.0, 8.0], [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0])
+    """
+    if not high > low:
+        return [low]
+    power = math.floor(math.log10((high - low) / most))
+    ordered = [float(f"{step}e{power + further}") for further in (-1, 0, 1) for step in steps]
+    enough = next(place for place, step in enumerate(ordered) if step >= (high - low) / most)
+    found: list[float] = []
+    for step in ordered[enough::-1]:
+        found = [place * step for place in range(math.ceil(low / step), math.floor(high / step) + 1)]
+        if len(found) > 1:
+            break
+    return found
 
 
 def tick_text(value: float) -> str:

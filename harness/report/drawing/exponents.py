@@ -6,10 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from matplotlib.ticker import MaxNLocator
-
 from harness.report.drawing import palette
-from harness.report.drawing.axes import CHARACTER, FONT, Form, Frame, shorten, tick_text, x_ticks
+from harness.report.drawing.axes import CHARACTER, FONT, Form, Frame, even_numbers, shorten, tick_text, x_ticks
 from harness.report.drawing.canvas import Canvas
 
 _POWERS = {-1: "inverse", 0: "constant", 1: "linear", 2: "square", 3: "cube"}
@@ -35,10 +33,8 @@ def draw_exponents(exponents: Sequence[Slope], leaf: str, form: Form, name: str)
     x_range = (min(0.0, *lows) - 0.12, max(1.0, *highs) + 0.18)
     frame = Frame(left, 50.0, width - 18, height - 30, x_range, (0.6 - len(exponents), 0.6), False)
     canvas = Canvas(width, height, FONT)
-    ticks = MaxNLocator(5 if form == "narrow" else 7, steps=[1, 2, 5, 10]).tick_values(*x_range)
-    x_ticks(
-        canvas, frame, [(float(tick), tick_text(float(tick))) for tick in ticks if x_range[0] <= tick <= x_range[1]]
-    )
+    ticks = even_numbers(*x_range, 5 if form == "narrow" else 7, (1, 2, 5))
+    x_ticks(canvas, frame, [(tick, tick_text(tick)) for tick in ticks])
     for whole in range(math.ceil(x_range[0]), math.floor(x_range[1]) + 1):
         x = frame.x(whole)
         canvas.line([x, x], [frame.bottom, frame.top], palette.SOFT, 1.0, dashes=(2, 2))

@@ -6,10 +6,6 @@ style sheet gives a light and a dark value; in a file of its own, by the light v
 
 from __future__ import annotations
 
-from typing import Any
-
-from matplotlib.colors import to_hex, to_rgba
-
 # Apart from one another under simulated colour blindness, and dark enough against their background.
 LIGHT = ("#1798fa", "#c98704", "#a8002b", "#6a0a70", "#9b8ea3", "#4100c3")
 DARK = ("#69b1fc", "#ffa223", "#ee5a60", "#bc9eb6", "#c6f9d0", "#8664ff")
@@ -67,11 +63,9 @@ def fixed(svg: str) -> str:
     return _replace(svg, _FIXED)
 
 
-def light(shown: Any) -> Any:
-    """A colour of a drawing, as matplotlib has it, in the light value of its sentinel; any other as it is."""
-    red, green, blue, opacity = to_rgba(shown)
-    value = _FIXED.get(to_hex((red, green, blue)))
-    return shown if value is None else to_rgba(value, opacity)
+def light(colour: str) -> str:
+    """A colour of a drawing in the light value of its sentinel; any other as it is."""
+    return _FIXED.get(colour, colour)
 
 
 def variables(dark: bool) -> str:

@@ -1,0 +1,149 @@
+"""What a sweep compares once its runs are done: experiments that ask for it, several at a time on several cores.
+
+A library that is wrong is a finding of the report, not a failure of the sweep; `harness compare` exits 1. What is timed
+here is timed by the CPU time of a process of its own.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from harness.cli.crosscheck import (
+    SHOWN,
+    SWEPT,
+    Asked,
+    Meshes,
+    backends_of,
+    cross_check,
+    event_methods,
+    kept,
+    key_of,
+    pairs_of,
+    reductions,
+)
+from harness.cli.surveying import SWEPT_SECONDS, engines, survey_key, surveyed
+from harness.compare.budget import Budget
+from harness.compare.document import Known
+from harness.compare.event_audit import FRAMES
+from harness.experiment.experiment import Experiment
+from harness.store.database import Database
+from harness.workers import shared_out, usable_cores
+
+# s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
+_COMPARING = 30.0
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class _Compared:
+    """What is kept of one experiment: of each pair its key and its document; and what is printed of it."""
+
+    documents: list[tuple[Pair, str, dict[str, Any]]]
+    lines: list[str]
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A comparison that is to be made.
+
+    Parameters
+    ----------
+    said : when it begins
+    """
+
+    experiment: Experiment
+    said: str
+    make: Callable[[], _Compared]
+
+
+def compare_asked(
+    experiments: Sequence[Experiment], meshes: Meshes, database: Database, *, command: str, fresh: bool, quiet: bool
+) -> list[str]:
+    """Compare where an experiment asks for it, unless that was done; each is kept as soon as it is made.
+
+    Parameters
+    ----------
+    experiments, meshes : loaded and opened
+    database : open for writing
+    command : the command line that asks for it
+    fresh : also what was compared before
+    quiet : do not say what is being compared
+
+    Returns
+    -------
+    list of str
+        The outcome, a line each pair, or each engine of an atlas.
+    """
+    done = set() if fresh else database.history.compared()
+    asking = [experiment for experiment in experiments if experiment.measure.families or experiment.measure.compare]
+    # a survey takes longest, and so begins first
+    asking.sort(key=lambda experiment: not experiment.measure.families)
+    tasks = [task for experiment in asking for task in _tasks(experiment, meshes, done)]
+    lines: dict[int, list[str]] = {}
+
+    def begin(place: int) -> None:
+        if not quiet:
+            print(f"{tasks[place].experiment.name}: {tasks[place].said}", file=sys.stderr)
+
+    for place, compared in shared_out([task.make for task in tasks], usable_cores(), begin):
+        experiment = tasks[place].experiment.name
+        for pair, key, document in compared.documents:
+            database.add_comparison(command, experiment, pair, key, document)
+        lines[place] = [f"{experiment}: {line}" for line in compared.lines]
+    return [line for _, mine in sorted(lines.items()) for line in mine]
+
+
+def _tasks(experiment: Experiment, meshes: Meshes, done: Collection[str]) -> Iterator[_Task]:
+    if experiment.measure.families:
+        wanted = [name for name in engines() if survey_key(experiment, meshes, name) not in done]
+        if wanted:
+            yield _Task(experiment, f"asking {', '.join(wanted)}", partial(_survey, experiment, meshes, wanted))
+        return
+    names, _ = backends_of(experiment)
+    events = event_methods(experiment)
+    keys = {pair: key_of(experiment, meshes, pair, SWEPT) for pair in pairs_of(names, events)}
+    left = {pair: key for pair, key in keys.items() if key not in done}
+    if not left:
+        return
+    involved = {name for pair in left for name in pair}
+    asked = {query: tuple(name for name in named if name in involved) for query, named in names.items()}
+    asked_events = tuple(name for name in events if (FRAMES, name) in left)
+    said = dict.fromkeys((*(name for named in asked.values() for name in named), *asked_events))
+    make = partial(_cross_check, experiment, meshes, asked, asked_events, left)
+    yield _Task(experiment, f"comparing {', '.join(said)}", make)
+
+
+def _cross_check(
+    experiment: Experiment, meshes: Meshes, asked: Asked, events: tuple[str, ...], keys: dict[Pair, str]
+) -> _Compared:
+    """Hold the methods of an experiment against each other."""
+    budget = Budget(_COMPARING)
+    known: Known = {}
+    documents, lines = [], []
+    for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=events):
+        if pair not in keys:
+            continue
+        found.left_out += [line for line in budget.left_out if line not in found.left_out]
+        rows = reductions(found, meshes, SHOWN, known)
+        documents.append((pair, keys[pair], kept(experiment, found, rows)))
+        real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
+        lines.append(f"{' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
+    return _Compared(documents, [*lines, *(f"left out: {line}" for line in budget.left_out)])
+
+
+def _survey(experiment: Experiment, meshes: Meshes, wanted: Sequence[str]) -> _Compared:
+    """Ask the engines about families of poses."""
+    seconds = SWEPT_SECONDS if experiment.measure.tier == "default" else None
+    found = surveyed(experiment, meshes, wanted, Budget(seconds))
+    documents, lines = [], []
+    for pair, document in found.documents():
+        documents.append((pair, survey_key(experiment, meshes, pair[0]), document))
+        mine = [cell for cell in found.atlas.cells if cell.engine == pair[0]]
+        verdicts, beyond = sum(cell.verdicts for cell in mine), sum(cell.beyond for cell in mine)
+        lines.append(f"{pair[0]}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
+    return _Compared(documents, [*lines, *(f"left out: {line}" for line in found.found.left_out)])
