@@ -29,7 +29,7 @@ sys.path.insert(0, str(HERE))
 from harness.kernel_cache import PACKAGE, all_sources  # noqa: E402
 
 LONGEST = 300.0  # s for a command, compilation included
-SECONDS = 300.0  # s after which no other round is begun
+SECONDS = 300.0  # s after which no other case is begun
 
 PUMPKIN = "mesh: pumpkin-1753.ply"
 # Scene, motion, engine, the clock that stands for the kernel, and the module where the kernel begins.
@@ -114,9 +114,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--base", metavar="REV", default="HEAD~1", help="the commit to hold against (default: HEAD~1)")
     parser.add_argument("--rounds", metavar="N", type=int, default=3)
-    parser.add_argument("--seconds", metavar="S", type=float, default=SECONDS, help="begin no round after so many")
+    parser.add_argument("--seconds", metavar="S", type=float, default=SECONDS, help="begin no case after so many")
     chosen = parser.parse_args()
-    began = monotonic()
+    deadline = monotonic() + chosen.seconds
     with tempfile.TemporaryDirectory() as folder:
         base, cases = Path(folder, "base"), Path(folder, "cases")
         git("worktree", "add", "--quiet", "--detach", str(base), chosen.base)
@@ -130,10 +130,8 @@ def main() -> None:
             sides = {"base": base, "here": HERE}
             rounds = []
             for number in range(chosen.rounds):
-                if rounds and monotonic() - began > chosen.seconds:
-                    break
                 databases = {name: Path(folder, f"{name}-{number}.db") for name in sides}
-                rounds.append({name: measure(sides[name], cases, databases[name]) for name in sides})
+                rounds.append(measure(sides, cases, databases, deadline))
         finally:
             git("worktree", "remove", "--force", str(base))
     print_table(chosen.base, rounds, changed)
@@ -190,13 +188,20 @@ def write_cases(folder: Path, chosen: list[str]) -> None:
         )
 
 
-def measure(checkout: Path, cases: Path, database: Path) -> dict[str, float]:
-    """CPU seconds by case, of those that the checkout can run."""
-    environment = os.environ | {"PYTHONPATH": str(checkout)}
-    harness, kept = [sys.executable, "-m", "harness"], ["--db", str(database)]
+def measure(
+    sides: dict[str, Path], cases: Path, databases: dict[str, Path], deadline: float
+) -> dict[str, dict[str, float]]:
+    """CPU seconds by side and case, of those cases that a side can run and that were begun in time."""
     for file in sorted(cases.glob("*.yaml")):  # one by one: a case that a side does not know costs itself alone
-        run([*harness, "sweep", str(file), *kept, "--quiet"], checkout, environment)
-    exported = run([*harness, "export", *kept, "--format", "json"], checkout, environment).stdout
+        if monotonic() < deadline:
+            for name, checkout in sides.items():
+                harness(checkout, "sweep", str(file), "--db", str(databases[name]), "--quiet")
+    return {name: measured(checkout, databases[name]) for name, checkout in sides.items()}
+
+
+def measured(checkout: Path, database: Path) -> dict[str, float]:
+    """CPU seconds by case, of the runs of a side."""
+    exported = harness(checkout, "export", "--db", str(database), "--format", "json").stdout
     runs = json.loads(exported or "{}").get("runs", [])
     metrics = {row["experiment"]: row["metrics"] for row in runs if row["status"] == "ok"}
     clocks = {name: (f"case{number}", clock) for number, (name, (*_, clock, _)) in enumerate(CASES.items())}
@@ -216,14 +221,16 @@ def print_table(base: str, rounds: list[dict[str, dict[str, float]]], changed: l
         if ratios:
             print(f"  {name:32} {median(ratios):.2f} [{min(ratios):.2f}, {max(ratios):.2f}]")
         else:
-            print(f"  {name:32} not there on both sides")
+            print(f"  {name:32} not run on both sides")
 
 
-def run(command: list[str], folder: Path, environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
-    """A command whose failure shows in what is missing; one that takes too long ends the measurement."""
+def harness(checkout: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """A side's own command, whose failure shows in what is missing; one that takes too long ends the measurement."""
     return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=LONGEST
-    )
+        [sys.executable, "-m", "harness", *words],
+        cwd=checkout, env=os.environ | {"PYTHONPATH": str(checkout)},
+        capture_output=True, text=True, check=False, timeout=LONGEST,
+    )  # fmt: skip
 
 
 def git(*words: str) -> None:

@@ -286,8 +286,8 @@ def interval_place(n: int) -> tuple[int, float]:
 
 
 def _median(values: Sequence[float]) -> float:
-    counted = np.array([value for value in values if not math.isnan(value)])
-    return float(np.median(counted)) if counted.size else math.nan
+    counted = np.sort(np.array([value for value in values if not math.isnan(value)], dtype=float))
+    return _middle(counted) if counted.size else math.nan
 
 
 def _middle(ascending: NDArray[np.float64]) -> float:

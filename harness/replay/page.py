@@ -14,7 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from harness.replay.document import Fact, document, view_box
-from harness.replay.still import still
+from harness.replay.kept_still import still_of
 from harness.store.recording import Recording
 
 # Each imports only from those before it; `main` starts the page.
@@ -65,7 +65,7 @@ def replay_page(
 
 def still_text(recording: Recording) -> str:
     """The still picture, a PNG, in base64."""
-    return base64.b64encode(still(recording)).decode("ascii")
+    return base64.b64encode(still_of(recording)).decode("ascii")
 
 
 def live_page(title: str, settings: Sequence[Setting], columns: Sequence[str]) -> str:

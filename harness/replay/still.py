@@ -17,9 +17,9 @@ from trimesh.creation import icosphere
 
 from harness.arrays import Floats
 from harness.replay.document import start_positions, view_box
+from harness.replay.kept_still import HEIGHT, WIDTH
 from harness.store.recording import Recording, Surface
 
-WIDTH, HEIGHT = 800, 500
 _OVERSAMPLING = 2  # painted at so many times the size
 _MOST_TRIANGLES = 24_000
 _TURN, _TILT, _FIELD = 0.62, 0.42, 0.62  # as the viewer's first view, rad

@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from harness.measure.noise import Control, controls_of
 from harness.report.backends.correctness import Correctness
 from harness.report.disputes import disputed
 from harness.report.methods import method_label
-from harness.report.point import METHOD, MeasuredPoint
+from harness.report.point import METHOD, MeasuredPoint, numbers_of
 from harness.report.quantity import leaf_text
 from harness.report.series import Arrangement, Series, hashable, is_number
 from harness.report.styles import same_colour, style_of
@@ -40,12 +41,7 @@ def arrange(
     controls : of its points
     known : what comparisons at its poses have found
     """
-    by_point = dict(tuple(runs.sort_values(["repeat", "sweep"], kind="stable").groupby("point", sort=False)))
-    nothing = runs.iloc[:0]
-    points = [
-        MeasuredPoint(row, by_point.get(row.key, nothing), known.is_wrong(MethodName.of(row.parameters)))
-        for row in record.points
-    ]
+    points = _measured(record, runs, known)
     unsure = disputed(record, points, known)
     points = [replace(point, disputed=point.row.key in unsure) for point in points] if unsure else points
     report: Mapping[str, Any] = record.specification.get("report") or {}
@@ -89,6 +85,19 @@ def arrange(
         (y,) if isinstance(y, str) else tuple(y),
         _controls(runs, controls),
     )
+
+
+def _measured(record: ExperimentRecord, runs: pd.DataFrame, known: Correctness) -> list[MeasuredPoint]:
+    """Its points with their runs; the numbers of all of them are taken from the table at once."""
+    ordered = runs.sort_values(["repeat", "sweep"], kind="stable")
+    numbers, good = numbers_of(ordered), (ordered["status"] == "ok").to_numpy()
+    rows_of = ordered.groupby("point", sort=False).indices
+    points = []
+    for row in record.points:
+        rows = np.asarray(rows_of.get(row.key, ()), dtype=np.intp)
+        wrong = known.is_wrong(MethodName.of(row.parameters))
+        points.append(MeasuredPoint(row, ordered.iloc[rows], wrong, numbers=(numbers, rows[good[rows]])))
+    return points
 
 
 def _styles(series: Mapping[str, MeasuredPoint]) -> dict[str, int]:

@@ -24,6 +24,15 @@ BUSY_ABOVE = 1.2
 
 _NOTHING = np.empty(0)
 
+Numbers = Mapping[str, npt.NDArray[np.float64]]
+"""Columns of numbers, each by the name of what it holds."""
+
+
+def numbers_of(runs: pd.DataFrame) -> Numbers:
+    """The columns of numbers of a table of runs, NaN where a run has none."""
+    numbers = runs.select_dtypes("number")
+    return dict(zip(numbers.columns, numbers.to_numpy(np.float64, na_value=math.nan).T, strict=True))
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredPoint:
@@ -35,12 +44,14 @@ class MeasuredPoint:
     runs : a row a run, by repeat
     proven_wrong : whether its method was proven wrong at poses of this experiment, or failed at them
     disputed : whether other methods saw other hits of the same motion, and it is not known who is right
+    numbers : of a table that its good runs are rows of, by repeat, and which; where they are at hand
     """
 
     row: PointRow
     runs: pd.DataFrame
     proven_wrong: bool = False
     disputed: bool = False
+    numbers: tuple[Numbers, npt.NDArray[np.intp]] | None = None
 
     @property
     def parameters(self) -> Mapping[str, Any]:
@@ -70,8 +81,10 @@ class MeasuredPoint:
     def values(self, metric: str) -> npt.NDArray[np.float64]:
         """The metric of every good run that reports it, by repeat."""
         if metric not in self._values:
-            values = self._numbers.get(metric, _NOTHING)
-            self._values[metric] = values[np.isfinite(values)]
+            columns, rows = self.numbers or (self._numbers, slice(None))
+            values = columns[metric][rows] if metric in columns else _NOTHING
+            finite = np.isfinite(values)
+            self._values[metric] = values if finite.all() else values[finite]
         return self._values[metric]
 
     def by_place(self, metric: str) -> dict[tuple[int, str], float]:
@@ -120,10 +133,8 @@ class MeasuredPoint:
         return not self.is_wrong and not self.disputed
 
     @cached_property
-    def _numbers(self) -> dict[str, npt.NDArray[np.float64]]:
-        """Every column of numbers of the good runs, taken from the table at once."""
-        numbers = self.good.select_dtypes("number")
-        return dict(zip(numbers.columns, numbers.to_numpy(np.float64, na_value=math.nan).T, strict=True))
+    def _numbers(self) -> Numbers:
+        return numbers_of(self.good)
 
     @cached_property
     def _by_place(self) -> dict[str, dict[tuple[int, str], float]]:

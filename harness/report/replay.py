@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from harness.replay.facts import facts
+from harness.replay.kept_still import HEIGHT, WIDTH
 from harness.replay.page import described, replay_page, still_text, summary
-from harness.replay.still import HEIGHT, WIDTH
 from harness.report.quantity import quantity
 from harness.report.words import leaf_label
 from harness.store.recording import recording_of

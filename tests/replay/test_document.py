@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 from harness.replay.document import document
+from harness.replay.kept_still import still_of
 from harness.replay.page import replay_page
 from harness.replay.still import still
 from harness.store.recording import NearLines
@@ -93,3 +94,18 @@ def test_the_still_shows_the_box_and_the_bodies_on_nothing(surface):
     assert 0.005 < opaque.mean() < 0.6
     assert not opaque[0].any()
     assert not opaque[:, 0].any()
+
+
+def test_a_still_is_drawn_once_and_a_damaged_one_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    first = still_of(recording())
+    assert first == still(recording())
+    (file,) = (tmp_path / "harness" / "stills").iterdir()
+    with monkeypatch.context() as changed:
+        changed.setattr("harness.replay.still.still", lambda _: b"drawn again")
+        assert still_of(recording()) == first
+        assert still_of(recording(())) == b"drawn again"  # spheres in place of meshes
+        moved = replace(recording(), leg_positions=recording().leg_positions + 0.25)
+        assert still_of(moved) == b"drawn again"
+    file.write_bytes(file.read_bytes()[:-1])
+    assert still_of(recording()) == first

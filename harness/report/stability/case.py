@@ -8,12 +8,15 @@ it survives all others.
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from harness.measure.limits import Limits, limits
@@ -77,16 +80,16 @@ class Case:
 
     def result(self, pipeline: str) -> CaseResult | None:
         """What became of it by a pipeline; None where it was not run."""
-        chosen = [method.pipeline == pipeline for method in self.methods]
-        if not any(chosen):
+        mine = [place for place, method in enumerate(self.methods) if method.pipeline == pipeline]
+        if not mine:
             return None
-        mine = self.runs[chosen]
         record = self.page.record
-        broken = mine[~mine["status"].isin(("ok", "rejected"))]
-        if len(broken):
-            return CaseResult("fails", _short(f"{broken['status'].iloc[0]}: {broken['reason'].iloc[0]}"))
+        ended = [(self._columns["status"][place], self._columns["reason"][place]) for place in mine]
+        broken = [f"{status}: {reason}" for status, reason in ended if status not in ("ok", "rejected")]
+        if broken:
+            return CaseResult("fails", _short(broken[0]))
         expected = list(self._judged(record.expectations, mine))
-        if rejected := mine[mine["status"] == "rejected"]["reason"].tolist():
+        if rejected := [reason for status, reason in ended if status == "rejected"]:
             return CaseResult("refuses", _short(str(rejected[0])))
         claimed = list(self._judged(record.claims, mine))
         for word, rows in (("fails", expected), ("degrades", claimed)):
@@ -96,19 +99,37 @@ class Case:
         held = [text for verdict, text in (*expected, *claimed) if verdict == "holds"]
         return CaseResult("survives", held[0] if held else "came to its end")
 
-    def _judged(self, rows: Sequence[VerdictRow], mine: pd.DataFrame) -> Iterator[tuple[str, str]]:
+    @cached_property
+    def _columns(self) -> Columns:
+        """Of its runs."""
+        return Columns(self.runs)
+
+    def _judged(self, rows: Sequence[VerdictRow], mine: Sequence[int]) -> Iterator[tuple[str, str]]:
         """Of every row of `expect` or `claims` that speaks of these runs: its verdict on them, and its worst number."""
-        points = Columns(mine.drop_duplicates("point"))
+        points = list({self._columns["point"][place]: place for place in reversed(mine)}.values())
         for row in rows:
-            among = which(points, row.criterion.get("where") or {})
+            among = self._which(row.criterion.get("where") or {})[points]
             bounds = limits(as_criterion(row.criterion))
             groups = [
-                group for group in row.detail.get("groups") or () if (among & which(points, group["parameters"])).any()
+                group
+                for group in row.detail.get("groups") or ()
+                if (among & self._which(group["parameters"])[points]).any()
             ]
             if groups:
                 failing = [group for group in groups if group["verdict"] == "fails"]
                 worst = max(failing or groups, key=lambda group: bounds.excess(group["value"]))
                 yield worst["verdict"], _number_behind(row.criterion, worst, bounds)
+
+    def _which(self, where: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
+        """Of every run, whether its leaves have these values; asked of the same ones by every method."""
+        key = json.dumps(where, sort_keys=True)
+        if key not in self._found:
+            self._found[key] = which(self._columns, where)
+        return self._found[key]
+
+    @cached_property
+    def _found(self) -> dict[str, npt.NDArray[np.bool_]]:
+        return {}
 
 
 def is_case(page: ExperimentPage) -> bool:
