@@ -194,7 +194,7 @@ def cross_check(
 
 def reductions(found: Comparison, meshes: Meshes, most: int, known: Known | None = None) -> list[Reduced]:
     """The cases of a comparison, the first `most` of every backend made smaller, if that is not `known` already."""
-    return reduced(found, {id(mesh): path.name for path, mesh in meshes.items()}, most, known)
+    return reduced(found, {mesh.identity: path.name for path, mesh in meshes.items()}, most, known)
 
 
 def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict[str, Any]:
