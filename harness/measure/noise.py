@@ -24,7 +24,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special, stats
+from scipy import special
 
 from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary, interval_place
 
@@ -165,7 +165,8 @@ def level(p_values: Sequence[float], rate: float = FALSE_RATE) -> float:
     values = np.sort(np.asarray(p_values, dtype=float))
     if not len(values):
         return rate
-    counted = values[stats.false_discovery_control(values) <= rate]
+    adjusted = values * (len(values) / np.arange(1, len(values) + 1))
+    counted = values[np.minimum.accumulate(adjusted[::-1])[::-1] <= rate]
     return float(counted[-1]) if len(counted) else 0.0
 
 
@@ -190,8 +191,18 @@ def _chance(n: int, place: int, controls: int, beyond: int) -> float:
 
     The order of the distances of equal pairs and control is any, with the same probability; their signs are coins.
     """
-    nearer = np.arange(place + 1)  # pairs that lie no farther out than those of the control
-    # the distribution counts the pairs drawn before `beyond` of the control have been
-    chances = stats.nhypergeom.pmf(nearer, n + controls, n, beyond) if beyond else (nearer == 0).astype(float)
-    on_one_side = stats.binom.sf(n - place - 1, n - nearer, 0.5)
-    return float(min(1.0, 2.0 * np.sum(chances * on_one_side)))
+    # of the pairs, so many lie no farther out than those of the control
+    chances = [(nearer, _comes_before(nearer, beyond, n, controls)) for nearer in range(place + 1)]
+    both = sum(chance * float(special.bdtrc(n - place - 1, n - nearer, 0.5)) for nearer, chance in chances)
+    return min(1.0, 2.0 * both)
+
+
+def _comes_before(nearer: int, beyond: int, n: int, controls: int) -> float:
+    """How often, of n equal pairs and so many of a control in any order, so many come before `beyond` of the control.
+
+    The negative hypergeometric distribution.
+    """
+    if not beyond:
+        return float(nearer == 0)
+    orders = math.comb(nearer + beyond - 1, nearer) * math.comb(n + controls - beyond - nearer, n - nearer)
+    return orders / math.comb(n + controls, n)

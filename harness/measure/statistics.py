@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
+from scipy import special  # scipy.stats takes as long to import as a small report to write
 
 CONFIDENCE = 0.95
 FEWEST_FOR_INTERVAL = 5
@@ -27,7 +27,7 @@ FEWEST_FOR_EXPONENT = 3
 
 _MEDIAN_TO_MEAN = math.pi / 2.0  # variance of a median to that of a mean, of normal noise
 _CONSTANT = 1e-12  # what varies by less, relatively, varies by rounding
-_SCALED = 1.0 / float(stats.norm.ppf(0.75))  # makes a median absolute deviation a standard deviation of normal noise
+_SCALED = 1.0 / float(special.ndtri(0.75))  # makes a median absolute deviation a standard deviation of normal noise
 
 
 @dataclass(frozen=True)
@@ -193,10 +193,19 @@ def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
     if np.ptp(log_y) < _CONSTANT:  # constants have no correlation, but the power 0 explains them wholly
         end = 0.0 if n > 2 else math.nan
         return Exponent(0.0, end, end, 1.0, range_factor, n, dropped)
-    fit = stats.linregress(log_x, log_y)
-    slope = float(fit.slope)
-    low, high = _slope_interval(log_x, log_y, slope, float(fit.stderr), _by_repeat(samples, usable))
-    return Exponent(slope, low, high, float(fit.rvalue**2), range_factor, n, dropped)
+    slope, scatter, explained = _line(log_x, log_y)
+    low, high = _slope_interval(log_x, log_y, slope, scatter, _by_repeat(samples, usable))
+    return Exponent(slope, low, high, explained, range_factor, n, dropped)
+
+
+def _line(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Of the line through points by least squares: its slope, the standard error of that, and r²."""
+    off_x, off_y = x - x.mean(), y - y.mean()
+    along, both, across = float(off_x @ off_x), float(off_x @ off_y), float(off_y @ off_y)
+    explained = min(1.0, both * both / (along * across))
+    left = max(0, len(x) - 2)
+    scatter = math.sqrt((1.0 - explained) * across / along / left) if left else 0.0
+    return both / along, scatter, explained
 
 
 def _slope_interval(
@@ -239,7 +248,7 @@ def _is_no_power_law(residuals: NDArray[np.float64], repeats: NDArray[np.float64
         return True
     excess = residuals**2 / np.maximum(noise, noise.max() * 1e-12)
     ratio = float(excess.sum()) / (k - 2)
-    return bool(ratio > _MEDIAN_TO_MEAN * stats.f.ppf(0.99, k - 2, n - 1))
+    return bool(ratio > _MEDIAN_TO_MEAN * special.fdtri(k - 2, n - 1, 0.99))
 
 
 def _by_repeat(samples: Mapping[float, Sequence[float]], xs: Collection[float]) -> NDArray[np.float64] | None:
@@ -255,7 +264,7 @@ def _by_repeat(samples: Mapping[float, Sequence[float]], xs: Collection[float]) 
 @lru_cache(maxsize=256)
 def _student(freedom: int) -> float:
     """How many standard errors an interval reaches to either side."""
-    return float(stats.t.ppf((1.0 + CONFIDENCE) / 2.0, freedom))
+    return float(special.stdtrit(freedom, (1.0 + CONFIDENCE) / 2.0))
 
 
 def geometric_mean(values: ArrayLike) -> float:
@@ -274,15 +283,16 @@ def geometric_mean(values: ArrayLike) -> float:
     given = np.asarray(values, dtype=float)
     if given.size == 0 or not np.all(np.isfinite(given) & (given > 0.0)):
         raise ValueError("a geometric mean needs finite numbers above 0")
-    return float(stats.gmean(given, axis=None))
+    return float(np.exp(np.log(given).mean()))
 
 
 @lru_cache(maxsize=256)
 def interval_place(n: int) -> tuple[int, float]:
     """Of five values or more, the place k of those that bound the median, x[k] and x[n - 1 - k], and their coverage."""
     # P(fewer than k + 1 of n values lie below the median) is binomial; both sides may miss half of 5 %
-    place = max(0, int(stats.binom.ppf((1.0 - CONFIDENCE) / 2.0, n, 0.5)) - 1)
-    return place, float(1.0 - 2.0 * stats.binom.cdf(place, n, 0.5))
+    enough = next(k for k in range(n + 1) if special.bdtr(k, n, 0.5) >= (1.0 - CONFIDENCE) / 2.0)
+    place = max(0, enough - 1)
+    return place, float(1.0 - 2.0 * special.bdtr(place, n, 0.5))
 
 
 def _median(values: Sequence[float]) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 from zlib import crc32
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from harness.measure.statistics import fit_exponent, summary
 from harness.report.sentences.crossings import crossings
@@ -51,7 +51,10 @@ class Rate:
     @property
     def most(self) -> float:
         """The largest rate that such a result allows, with 95 % confidence."""
-        return float(stats.binomtest(self.times, self.trials, alternative="less").proportion_ci(0.95, "exact").high)
+        if self.times >= self.trials:
+            return 1.0
+        # of Clopper and Pearson
+        return float(special.betaincinv(self.times + 1, self.trials - self.times, 0.95))
 
 
 # What was simulated: yields (times, trials) one trial after another, the same ones for the same seed.
