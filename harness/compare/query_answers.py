@@ -20,7 +20,7 @@ Told: TypeAlias = dict[tuple[int, int], float]
 
 @cache
 def make_ready(name: MethodName) -> None:
-    """Compile the kernels of a method here, so that no process that is forked from this one has to before it answers."""
+    """Compile the kernels of a method here, so that no process forked from this one has to before it answers."""
     if name.kernels:
         for _, compile_kernels in method_of(name, within=0.0).warm_ups():
             compile_kernels()
