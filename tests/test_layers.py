@@ -21,6 +21,7 @@ BASE = {
     "kernel_cache",
     "kept_files",
     "modules",
+    "prefetch",
     "process_limits",
     "python_child",
     "threads",

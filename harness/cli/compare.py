@@ -71,6 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.compare.document import document
     from harness.compare.outcome import Comparison
     from harness.runner.preparation import prepare
+    from harness.workers import usable_cores
 
     def progress(line: str) -> None:
         print(line, file=sys.stderr)
@@ -89,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     cells: list[Cell] = []
     for experiment in experiments:
         if experiment.measure.families:
-            found_of = surveyed(experiment, meshes, engines(chosen), budget, progress)
+            found_of = surveyed(experiment, meshes, engines(chosen), budget, progress, usable_cores())
             whole.add(found_of.found)
             rows += [(row, True) for row in found_of.rows]
             cells += found_of.atlas.cells
@@ -188,10 +189,11 @@ def _saved(rows: list[Reduced], meshes: Opened, folder: str) -> dict[int, str]:
     from harness.compare.reproduction import save
     from harness.compare.script import script_of
 
+    path_of = {opened.identity: path for path, opened in meshes.items()}
     files: dict[int, str] = {}
     for place, row in enumerate(rows):
         if row.small is not None:
-            paths = [next(path for path, opened in meshes.items() if opened is mesh) for mesh in row.small.scene.meshes]
+            paths = [path_of[mesh.identity] for mesh in row.small.scene.meshes]
             path = save(row.small, Path(folder), f"{row.name}-{place}", paths, script_of(row.small))
             files[place] = str(path)
     return files

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 from harness.backends.registry import names as declared
 from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.cli.crosscheck import Meshes
-from harness.compare.atlas import JUDGE, Atlas, Cell, survey
+from harness.compare.atlas import JUDGE, Atlas, Cell, Survey, survey
 from harness.compare.budget import Budget
-from harness.compare.document import Known, Reduced, document, reduced, shown_case
+from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.gap_atlas import SURVEYS
 from harness.compare.outcome import Comparison
 from harness.compare.own_gaps import OWN
@@ -28,7 +29,10 @@ from harness.measure.machine import package_versions
 from harness.runner.key import point_key
 from harness.runner.scene_of_point import build_scene
 from harness.runner.servers import files_of
-from harness.vocabulary import OWN_BACKEND, Family
+from harness.scene.mesh import Mesh
+from harness.scene.scene import Scene
+from harness.vocabulary import OWN_BACKEND, Family, Shape
+from harness.workers import shared_out
 
 # s for the atlas of an experiment within a sweep; `harness compare` takes as long as it takes.
 SWEPT_SECONDS = 170.0
@@ -98,44 +102,100 @@ def engines(chosen: Sequence[str] = ()) -> tuple[str, ...]:
     return tuple(chosen) or (*(name for name in declared() if missing(name) is None), f"{OWN_BACKEND}/grid")
 
 
+@dataclass(frozen=True)
+class _Part:
+    """What was found in one family of one shape, mesh and query."""
+
+    atlas: Atlas
+    rows: list[Reduced]
+    left_out: list[str]
+
+
 def surveyed(
     experiment: Experiment,
     meshes: Meshes,
     names: Sequence[str],
     budget: Budget,
     progress: Callable[[str], None] = lambda line: None,
+    workers: int = 1,
 ) -> Surveyed:
-    """Ask every engine about every family, shape and mesh of an experiment; then make its cases smaller."""
-    atlas = Atlas()
+    """Ask every engine about every family, shape and mesh of an experiment, and make its cases smaller.
+
+    Parameters
+    ----------
+    experiment, meshes : loaded and opened
+    names : of engines
+    budget : ends it early
+    progress : told what is being asked
+    workers : processes that share out the families
+    """
+    tasks: list[tuple[str, Callable[[], _Part]]] = []
     wanted = {(point.scene.shape, point.scene.mesh_names, point.motion.poses): point for point in experiment.points}
     measure = experiment.measure
-    drawn = tuple(family for family in measure.families if family != RESTING)
+    file_of = {mesh.identity: path.name for path, mesh in meshes.items() if isinstance(mesh, Mesh)}
     for (shape, _, _), point in wanted.items():
         files = files_of(experiment, point, meshes)
         recorded = build_scene(point, files, measure.memory) if RESTING in measure.families else None
+        only = files.meshes[0] if len(files.meshes) == 1 else None
         for query in measure.family_queries:
             asked = names if query == "collision" else (*names, OWN)
-            how = measure.family_poses, asked, budget, progress
-            for mesh in files.meshes or (None,):
-                atlas.add(survey(shape, mesh, drawn, *how, made=SURVEYS[query]))
-            if recorded is not None:
-                only = files.meshes[0] if len(files.meshes) == 1 else None
-                atlas.add(survey(shape, only, (RESTING,), *how, made=SURVEYS[query], recorded=recorded))
+            kinds = [(mesh, family) for mesh in files.meshes or (None,) for family in measure.families]
+            kinds = [kind for kind in kinds if kind[1] != RESTING]
+            for mesh, family in kinds if recorded is None else [*kinds, (only, RESTING)]:
+                of = f" of {mesh.name}" if mesh is not None and shape != "sphere" else ""
+                how = (measure.family_poses, asked, budget, SURVEYS[query], recorded, file_of)
+                tasks.append((f"{query}, {family}, {shape}{of}", partial(_part, shape, mesh, family, *how)))
+
+    def begin(place: int) -> None:
+        progress(f"{tasks[place][0]}: {measure.family_poses} poses")
+
+    left_out = list(budget.left_out)
+    parts = dict(_done([task for _, task in tasks], workers, begin))
+    atlas, rows = Atlas(), list[Reduced]()
+    for place in range(len(tasks)):
+        atlas.add(parts[place].atlas)
+        rows += parts[place].rows
+        left_out += parts[place].left_out
     found = Comparison(
-        cases=list(atlas.cases.values()),
-        failures=atlas.failures,
-        unsupported=atlas.unsupported,
-        left_out=list(budget.left_out),
+        cases=[row.case for row in rows], failures=atlas.failures, unsupported=atlas.unsupported, left_out=left_out
     )
-    file_of = {id(mesh): path.name for path, mesh in meshes.items()}
-    known: Known = {}
-    rows = reduced(found, file_of, len(found.cases), known)
     scripts = {
         place: text
         for place, row in enumerate(rows)
         if row.small is not None and (text := script_of(row.small)) is not None
     }
     return Surveyed(experiment, atlas, found, rows, scripts, {cell: place for place, cell in enumerate(atlas.cases)})
+
+
+def _done(
+    tasks: Sequence[Callable[[], _Part]], workers: int, begin: Callable[[int], None]
+) -> Iterator[tuple[int, _Part]]:
+    """What comes of each, with its place."""
+    if workers > 1:
+        yield from shared_out(tasks, workers, begin)
+        return
+    for place, task in enumerate(tasks):
+        begin(place)
+        yield place, task()
+
+
+def _part(
+    shape: Shape,
+    mesh: Mesh | None,
+    family: Family,
+    count: int,
+    names: Sequence[str],
+    budget: Budget,
+    made: type[Survey],
+    recorded: Scene | None,
+    file_of: Mapping[str, str],
+) -> _Part:
+    before = len(budget.left_out)
+    atlas = survey(shape, mesh, (family,), count, names, budget, made=made, recorded=recorded)
+    cases = list(atlas.cases.values())
+    with budget.paused():
+        rows = reduced(Comparison(cases=cases), file_of, len(cases))
+    return _Part(atlas, rows, budget.left_out[before:])
 
 
 def survey_key(experiment: Experiment, meshes: Meshes, name: str) -> str:

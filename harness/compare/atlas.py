@@ -18,13 +18,15 @@ from harness.compare.comparison import MOST_FAILURES
 from harness.compare.families import family_poses, resting_poses
 from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError, preload
 from harness.compare.outcome import Case, Failure
+from harness.compare.own_gaps import OWN, compile_own_gaps
 from harness.compare.pair_audit import band
 from harness.compare.poses import Pose, PoseSet
+from harness.compare.query_answers import make_ready
 from harness.compare.tally import NamePair
 from harness.compare.truths import Truths
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from harness.vocabulary import Query, Shape
+from harness.vocabulary import MethodName, Query, Shape
 
 JUDGE = "exact arithmetic"
 """The name under which the judge stands beside an engine."""
@@ -128,8 +130,13 @@ def survey(
     recorded : whose poses the family "resting" is of
     """
     atlas, made = Atlas(), made or Survey
-    for name in names:
-        preload(name)
+    with budget.paused():
+        for name in names:
+            preload(name)
+            if name == OWN:
+                compile_own_gaps(shape)
+            else:
+                make_ready(MethodName.read(name, shape, made.query))
     for family in families:
         what = f"{made.query}, {family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from math import isinf
 from typing import Any, TypeAlias
@@ -45,13 +46,13 @@ class Reduced:
         return "-".join(self.case.backends).replace("/", "-")
 
 
-def reduced(found: Comparison, mesh_name: dict[int, str], most: int, known: Known | None = None) -> list[Reduced]:
+def reduced(found: Comparison, mesh_name: Mapping[str, str], most: int, known: Known | None = None) -> list[Reduced]:
     """Every wrong verdict, those that both backends share last; the first few of every backend made smaller.
 
     Parameters
     ----------
     found : Comparison
-    mesh_name : the file of a mesh, by id(mesh)
+    mesh_name : the file of a mesh, by its identity
     most : cases of one backend to make smaller: more of them show the same defect again
     known : what was made of them beside other backends, which is added to
     """
@@ -68,7 +69,7 @@ def reduced(found: Comparison, mesh_name: dict[int, str], most: int, known: Know
             small = minimise(case, known.get(place))
             if small is not None:
                 known.setdefault(place, small)
-        names = tuple(mesh_name.get(id(mesh), mesh.name) for mesh in case.scene.meshes)
+        names = tuple(mesh_name.get(mesh.identity, mesh.name) for mesh in case.scene.meshes)
         rows.append(Reduced(case, small, names, now))
     return rows
 

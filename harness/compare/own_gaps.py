@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends.protocol import NearPairs
+from harness.methods.warm_up_scene import two_bodies
 from harness.narrowphase.gap import EXACT, MeshGapShape, mesh_gap_shape
 from harness.narrowphase.pose_gaps import Gaps, Poses, hull_gaps, mesh_gaps, sphere_gaps
 from harness.scene.scene import Scene
@@ -47,3 +50,12 @@ class OwnGaps:
         near = found.gaps <= within
         pairs = np.array([[0, 1]], np.int64)[near]
         return NearPairs(pairs, found.gaps[near], found.points[near])
+
+
+@cache
+def compile_own_gaps(shape: Shape) -> None:
+    """Compile what is asked about bodies of a shape."""
+    scene = two_bodies(shape)
+    own = OwnGaps()
+    own.load(scene)
+    own.distances(scene.bodies.positions, scene.bodies.quaternions, 0.0)

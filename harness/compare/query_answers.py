@@ -20,8 +20,8 @@ Told: TypeAlias = dict[tuple[int, int], float]
 
 @cache
 def make_ready(name: MethodName) -> None:
-    """Compile the kernels of a method's query here, so that no process which is forked from this one has to."""
-    if name.query != "collision" and name.kernels:
+    """Compile the kernels of a method here, so that no process forked from this one has to before it answers."""
+    if name.kernels:
         for _, compile_kernels in method_of(name, within=0.0).warm_ups():
             compile_kernels()
 

@@ -88,7 +88,7 @@ def truth_of(shape, size):
 
 
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
-@pytest.mark.parametrize("size", [1e-3, 1.0])
+@pytest.mark.parametrize("size", [pytest.param(1e-3, marks=pytest.mark.slow), 1.0])
 def test_gaps_are_those_of_exact_arithmetic(backend, shape, size):
     if shape not in backend.shapes or (backend.name, shape) in GAPLESS:
         pytest.skip("it has no gaps of such a shape")

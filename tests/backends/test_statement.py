@@ -39,7 +39,9 @@ def installed(tmp_path, monkeypatch):
     return put
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize(
+    "way", [pytest.param(way, marks=() if number % 3 == 0 else pytest.mark.slow) for number, way in enumerate(WAYS)]
+)
 def test_why_a_strangers_backend_cannot_be_used_is_told_in_one_line(installed, way):
     installed(way)
     said = statement("odd", 4.0)

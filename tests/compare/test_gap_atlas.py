@@ -24,7 +24,7 @@ def found(query, shape, engines, families=FAMILIES, count=4):
     return {(cell.engine, cell.family): (cell.verdicts, cell.beyond) for cell in made.cells}
 
 
-@pytest.mark.parametrize("query", ["distance", "tolerance"])
+@pytest.mark.parametrize("query", ["distance", pytest.param("tolerance", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "shape", ["hull", *(pytest.param(shape, marks=pytest.mark.slow) for shape in ("sphere", "mesh"))]
 )

@@ -37,7 +37,7 @@ def named(found):
 
 
 @pytest.mark.parametrize("question", [DISTANCE, NEAR, IMPACT], ids=lambda question: question.query)
-@pytest.mark.parametrize("shape", ["sphere", "hull"])
+@pytest.mark.parametrize("shape", [pytest.param("sphere", marks=pytest.mark.slow), "hull"])
 def test_honest_methods_are_not_accused(question, shape):
     found = compare([crowd(question, shape)], HONEST)
     assert (named(found), found.unsupported) == (set(), [])

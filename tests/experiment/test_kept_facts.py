@@ -122,12 +122,14 @@ def test_a_mesh_that_was_spoilt_or_taken_away_is_noticed(folder, said):
     assert json.loads(said(*COMMANDS[1])[1].out)["experiments"][0]["problems"] == 1
 
 
+@pytest.mark.slow
 def test_a_mesh_that_stands_nearer_is_noticed(folder, said):
     assert said("validate", "experiments")[0] == 0
     put(folder / "experiments" / "mine.ply", b"no mesh")
     assert said("validate", "experiments")[0] == 2
 
 
+@pytest.mark.slow
 def test_poses_that_have_changed_are_noticed(folder, said):
     def record(bodies):
         path = folder / "experiments" / "bin.npz"
@@ -162,6 +164,7 @@ def test_of_what_is_wrong_nothing_is_kept(folder, said):
     assert kept_files(folder) == []
 
 
+@pytest.mark.slow
 def test_files_of_one_name_are_wrong_however_often_they_are_looked_at(folder, said):
     copies = [folder / "one" / "experiments", folder / "other" / "experiments"]
     for copy in copies:

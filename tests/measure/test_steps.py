@@ -36,7 +36,7 @@ def test_where_nothing_changes_fewer_than_one_history_in_twenty_names_a_step(kin
     assert false < 0.05 * histories
 
 
-@pytest.mark.parametrize("kind", ["even", "uneven"])
+@pytest.mark.parametrize("kind", ["even", pytest.param("uneven", marks=pytest.mark.slow)])
 def test_a_step_of_a_half_is_found_where_it_is(kind):
     rng = np.random.default_rng(7)
     found = 0

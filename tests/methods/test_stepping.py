@@ -49,7 +49,7 @@ def test_walls_are_answered_after_pairs_with_what_these_left():
 
 
 @pytest.mark.parametrize("response", ["reflect", "elastic"])
-@pytest.mark.parametrize("shape", ["sphere", "hull"])
+@pytest.mark.parametrize("shape", ["sphere", pytest.param("hull", marks=pytest.mark.slow)])
 def test_energy_is_kept_and_no_centre_leaves_a_crowded_box(shape, response):
     metrics = fly(random_scene(shape, 30, 3.0), frames=300, response=response).metrics
     assert metrics["pair_hits"] > 100

@@ -150,7 +150,7 @@ def test_fine_icospheres_fly_as_spheres_do():
     assert max(latest) / min(latest) < 4
 
 
-@pytest.mark.parametrize("shape", ["hull", "mesh"])
+@pytest.mark.parametrize("shape", ["hull", pytest.param("mesh", marks=pytest.mark.slow)])
 def test_the_lateness_of_frames_is_of_first_order_in_their_length(shape):
     scene = crowd(mesh_named(PUMPKIN), 6, 1.2, 2, shape)
     first = 10
@@ -166,7 +166,7 @@ def test_the_lateness_of_frames_is_of_first_order_in_their_length(shape):
     assert ((orders > 0.5) & (orders < 1.5)).all()
 
 
-@pytest.mark.parametrize(("name", "shape"), [("cube", "hull"), (PUMPKIN, "mesh")])
+@pytest.mark.parametrize(("name", "shape"), [pytest.param("cube", "hull", marks=pytest.mark.slow), (PUMPKIN, "mesh")])
 def test_without_a_response_every_onset_is_found_and_no_other(name, shape):
     mesh, dt, until = cube_mesh() if name == "cube" else mesh_named(name), 1e-3, 2.5
     scene = crowd(mesh, 8, 1.4, 3, shape)

@@ -33,7 +33,7 @@ def test_gap_nearest_points_and_touching_are_those_of_the_exact_judge(seed, shap
     assert judged(Case(shape, forms, gap, ratio, far), np.random.default_rng(seed)).wrong == ""
 
 
-@pytest.mark.parametrize("lift", [1e-9, 1e-3, 0.4])
+@pytest.mark.parametrize("lift", [1e-9, *(pytest.param(lift, marks=pytest.mark.slow) for lift in (1e-3, 0.4))])
 def test_a_small_surface_is_as_far_from_a_wide_floor_as_its_lowest_vertex(lift):
     floor, ball = trimesh.creation.box((10.0, 10.0, 1.0)), trimesh.creation.icosphere(3)
     size, rng = float(np.sqrt(201.0)), np.random.default_rng(7)

@@ -273,7 +273,7 @@ def test_the_fastest_is_named_with_how_far_it_is_ahead(report_of):
     assert 3.5 < float(ratio) < 4.5
 
 
-@pytest.mark.parametrize("repeats", [1, 3, 4])
+@pytest.mark.parametrize("repeats", [1, pytest.param(3, marks=pytest.mark.slow), 4])
 def test_with_fewer_than_five_repeats_nobody_is_ahead_and_the_range_is_said(report_of, repeats):
     def slower(parameters, repeat, metrics):
         metrics["pair_seconds"] *= 4 if parameters["backend"] == "pybullet" else 1

@@ -142,6 +142,7 @@ def test_a_limit_longer_than_the_system_can_wait_is_none(spheres, servers, timeo
     assert run_one(spheres(timeout=timeout), servers).status == "ok"
 
 
+@pytest.mark.slow
 def test_a_run_has_one_thread_and_one_core(spheres, servers):
     experiment = spheres(backend="bad", algorithm="native", count=TELLS, box=ROOMY)
     report = servers.run(*task_of(experiment, experiment.points[0], {}, pinned=True))

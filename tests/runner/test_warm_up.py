@@ -4,7 +4,7 @@ import gc
 import pickle
 
 import pytest
-from numba.core.dispatcher import Dispatcher
+from numba.core.registry import CPUDispatcher
 
 from harness.runner.execute import execute
 from harness.runner.warm_up import warm_up, warm_ups
@@ -16,12 +16,16 @@ from tests.runner.conftest import SPHERES
 
 def compiled():
     """How many signatures each kernel of the package has been compiled for."""
-    kernels = [found for found in gc.get_objects() if isinstance(found, Dispatcher)]
-    return {
-        f"{found.py_func.__module__}.{found.py_func.__name__}": len(found.signatures)
-        for found in kernels
-        if found.py_func.__module__.startswith("harness.")
+    gc.unfreeze()  # else what was there when the tests had been collected would not be among the objects
+    # of a million objects: `isinstance` takes a second to ask them all
+    kernels = [found for found in gc.get_objects() if type(found) is CPUDispatcher]
+    found = {
+        f"{kernel.py_func.__module__}.{kernel.py_func.__name__}": len(kernel.signatures)
+        for kernel in kernels
+        if kernel.py_func.__module__.startswith("harness.")
     }
+    assert found, "no kernel was found"
+    return found
 
 
 @pytest.mark.slow

@@ -57,7 +57,16 @@ def test_a_refusal_says_the_true_reason_and_the_line(tmp_path, name, what, conte
 
 
 @pytest.mark.parametrize("name", POLYGONS)
-@pytest.mark.parametrize("solid", [L, L_STRAIGHT, U, RING], ids=["L", "straight corners", "U", "ring"])
+@pytest.mark.parametrize(
+    "solid",
+    [
+        L,
+        pytest.param(L_STRAIGHT, marks=pytest.mark.slow),
+        pytest.param(U, marks=pytest.mark.slow),
+        pytest.param(RING, marks=pytest.mark.slow),
+    ],
+    ids=["L", "straight corners", "U", "ring"],
+)
 def test_concave_polygons_keep_their_notches_wherever_they_begin(tmp_path, name, solid):
     turn = np.array([[2, 1, 2], [-2, 2, 1], [-1, -2, 2]]) / 3  # a rotation
     for start, tilted in itertools.product(range(len(solid.polygons[0])), (False, True)):

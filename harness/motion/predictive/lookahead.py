@@ -9,8 +9,8 @@ from __future__ import annotations
 from harness.kernel import step
 from harness.motion.predictive.cells import AROUND, Block, block, cell_number, layer_beyond
 from harness.motion.predictive.codes import Event, NeighbourSearch
-from harness.motion.predictive.prefetch import prefetch
 from harness.motion.predictive.state import EventQueue, Record, World
+from harness.prefetch import prefetch
 
 # Levels of the tree at which a winner's records, its cells or list, and its neighbours' motions are prefetched.
 SPHERE_LEVEL, AROUND_LEVEL, NEIGHBOURS_LEVEL = 6, 5, 4

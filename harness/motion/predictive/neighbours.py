@@ -12,8 +12,8 @@ from math import inf, sqrt
 from harness.kernel import step
 from harness.motion.predictive.cells import AROUND, block, gather_block, insert_by_position, remove
 from harness.motion.predictive.ignored import without_ignored
-from harness.motion.predictive.prefetch import prefetch
 from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
+from harness.prefetch import prefetch
 
 # How many candidates ahead anchors are read into the cache.
 PREFETCHED = 8
