@@ -3,6 +3,9 @@
 Elastic bursts are finite, however long (a light ball between a heavy one and a wall). Mirrored velocities of a sphere
 that overlaps several others, or a ball larger than its box, can go on forever, some of them in steps of 1e-17 s. So a
 sphere whose burst has reached the limit waits for a cooldown before each further hit, and each such wait is counted.
+
+Such a motion is ill-posed, and must not cost without bound: the cooldown is twice as long after every so many waits, up
+to a sixteenth of the time in which a mean sphere flies its radius.
 """
 
 from __future__ import annotations
@@ -11,6 +14,9 @@ from harness.kernel import step
 from harness.motion.predictive.codes import Event
 from harness.motion.predictive.events import enqueue
 from harness.motion.predictive.state import World
+
+# Waits of a run from one doubling of the cooldown to the next, and the most doublings.
+WAITS, DOUBLINGS = 1 << 14, 6
 
 
 @step
@@ -23,7 +29,7 @@ def note_hit(world: World, k: int, now: float, window: float) -> None:
     own.hits += 1
     own.changed = world.totals.counts[0].since_rebasing
     since = now - own.last_hit
-    stalled = own.burst_hits >= rules.burst_limit and since <= 2.0 * rules.cooldown
+    stalled = own.burst_hits >= rules.burst_limit and since <= 2.0 * present_cooldown(world)
     if since <= window:
         own.burst_hits += 1
     elif not stalled:
@@ -55,4 +61,10 @@ def cooldown(world: World, k: int, now: float) -> float:
     own = world.spheres.schedule[k]
     if own.burst_hits < world.rules.burst_limit or now - own.last_hit > world.rules.burst_window:
         return 0.0
-    return world.rules.cooldown
+    return present_cooldown(world)
+
+
+@step
+def present_cooldown(world: World) -> float:
+    """For how long, s, a sphere whose burst has reached the limit waits after so many waits of all."""
+    return float(world.rules.cooldown * (1 << min(world.totals.counts[0].stalled_events // WAITS, DOUBLINGS)))
