@@ -4,7 +4,7 @@
 
 Every other scene is recorded: its bodies go from one random pose to the next. Each is asked of brute force on FCL,
 `grid`, `sap` and `tree`, frame by frame, hulls and surfaces in turn; the judge decides the touching pair and the other
-of unlike meshes that have the fewest faces. Prints how many scenes, frames and verdicts there were, and how many differ.
+of unlike meshes that have the fewest faces. Prints how many scenes, frames and verdicts there were; how many differ.
 """
 
 import sys
