@@ -109,8 +109,12 @@ def both(a: Body, b: Body) -> int | None:
 
 
 def rows(array: Floats, count: int | None) -> Floats:
-    """(count, k): the rows of an array, or its only one again and again."""
-    return np.ascontiguousarray(np.broadcast_to(array, (count or (1 if count is None else 0), array.shape[-1])))
+    """(count, k): the rows of an array, or its only one again and again.
+
+    A copy, so that it may be written to: kernels would be compiled once more for arrays that may not.
+    """
+    shape = (count or (1 if count is None else 0), array.shape[-1])
+    return np.array(np.broadcast_to(array, shape), order="C")
 
 
 def searchable(body: Body) -> MeshGapShape:
