@@ -132,6 +132,11 @@ class MeasuredPoint:
         """Whether nothing speaks against its answers."""
         return not self.is_wrong and not self.disputed
 
+    @property
+    def replaces_shape(self) -> bool:
+        """Whether its method puts another shape in place of that of the bodies, as its plan warns."""
+        return any(str(warning).startswith("APPROXIMATION") for warning in self.row.plan.get("warnings") or ())
+
     @cached_property
     def _numbers(self) -> Numbers:
         return numbers_of(self.good)

@@ -62,14 +62,15 @@ class Growth:
 def rank(series: Sequence[Series], x: object, metric: str, resolution: Resolution) -> list[Ranked]:
     """The series that have the metric at x (None: anywhere), the best median first.
 
-    Left out: what is known to be wrong, because a faster answer that is wrong is not faster. Whether the order means
-    anything, `unranked` says.
+    Left out: what is known to be wrong, because a faster answer that is wrong is not faster; and, among others, what
+    answers for another shape than that of the bodies. Whether the order means anything, `unranked` says.
     """
     found = []
     for line in series:
         point = line.points[0] if x is None else line.at(x)
         if point is not None and math.isfinite(point.median(metric)) and point.can_be_ranked:
             found.append((line, point, point.median(metric)))
+    found = [entry for entry in found if not entry[1].replaces_shape] or found
     found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])
     if not found:
         return []

@@ -117,6 +117,18 @@ def test_methods_that_saw_the_same_or_flew_motions_of_their_own_are_ranked(repor
     assert "saw different" not in dispute_pages(report_of, {"brute-force": 1, "grid": 2, "tree": 1}, response="reflect")
 
 
+def test_a_page_says_where_bodies_had_to_wait_that_such_a_motion_is_ill_posed(report_of):
+    for waits in (0.0, 321.0):
+
+        def flown(parameters, repeat, metrics, waits=waits):
+            metrics["stalled_events"] = waits
+
+        base = {"shape": "hull", "count": 10}
+        page = report_of(swept={"algorithm": ["grid", "predictive"]}, base=base, fate=flown)["pages/x/index.html"]
+        assert ("up to 321 times: too many events came in no time" in page) == (waits > 0)
+        assert ("such a motion is ill-posed" in page) == (waits > 0)
+
+
 def test_where_there_is_a_reference_it_says_who_is_right(report_of):
     page = dispute_pages(report_of, {"brute-force": 1, "grid": 2, "tree": 1}, reference={"algorithm": "predictive"})
     assert "saw different hits" not in page

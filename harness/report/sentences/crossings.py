@@ -69,4 +69,4 @@ def _leaders(a: Series, b: Series, metric: str, resolution: Resolution) -> dict[
 
 
 def _has_cost(point: MeasuredPoint, metric: str) -> bool:
-    return point.can_be_ranked and point.median(metric) > 0
+    return point.can_be_ranked and not point.replaces_shape and point.median(metric) > 0

@@ -59,6 +59,17 @@ def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> lis
                 "answered elastically (TC model), so that the flight could go on."
             ).format(plural(len(guarded), "point"), number(most))
         )
+    stalled = [point for point in arrangement.points if (point.values("stalled_events") > 0).any()]
+    if stalled:
+        most = max(point.values("stalled_events").max() for point in stalled)
+        found.append(
+            Markup(
+                "<strong>Bodies had to wait</strong> in {}, up to {} times: too many events came in no time. So it is "
+                "where bodies begin inside one another or have no room, and such a motion is ill-posed: which hit "
+                "comes when, how many there are and what they cost is each method's own. So it is too where the search "
+                "for a contact is given up, and taken up again a moment later."
+            ).format(plural(len(stalled), "point"), number(most))
+        )
     if any("timing_grade" in point.good and not point.good["timing_grade"].all() for point in arrangement.points):
         found.append(
             Markup(

@@ -60,6 +60,10 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
         note += f" Without either: {', or '.join(reasons)}."
     if any(point.disputed for point in arrangement.points):
         note += " Not ranked: methods that saw different hits of the same motion."
+    apart = [series.label for series in methods if any(point.replaces_shape for point in series.points)]
+    if ranked and 0 < len(set(apart)) < len({series.label for series in methods}):
+        names = " and ".join(dict.fromkeys(apart))
+        note += f" Not ranked where others are: {names}, for another shape in place of that of the bodies."
     if any(point.is_wrong for point in arrangement.points):
         note += f" Struck through: {_why_struck(arrangement)}, and is not ranked."
     return Table(heading(metric), note, tuple(columns), tuple(rows))
