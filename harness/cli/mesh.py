@@ -65,7 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     make.add_argument("--force", action="store_true", help="overwrite the file if it is there")
     make.set_defaults(act=_make)
     inspect = actions.add_parser("inspect", help="print facts about mesh files")
-    inspect.add_argument("files", type=Path, nargs="+", metavar="FILE")
+    inspect.add_argument("files", type=Path, nargs="+", metavar="FILE", help="a file, or package:NAME/PATH")
     inspect.add_argument("--json", action="store_true", help="print one JSON document")
     inspect.set_defaults(act=_inspect)
     simplify = actions.add_parser("simplify", help="write a mesh of fewer faces and the same extent")
@@ -129,10 +129,20 @@ def _inspect(arguments: argparse.Namespace) -> None:
 
 
 def _opened(paths: list[Path]) -> dict[Path, Mesh | str]:
-    """The meshes of files from anywhere: read by a child process with limits."""
+    """The meshes of files from anywhere, or of packages: read by a child process with limits."""
+    from harness.experiment.mesh_location import PACKAGE, locate_mesh
     from harness.scene.mesh_child import open_meshes
 
-    return open_meshes(paths)
+    opened: dict[Path, Mesh | str] = {}
+    located = dict[Path, Path]()
+    for path in paths:
+        try:
+            located[path] = locate_mesh(str(path), Path()) if str(path).startswith(PACKAGE) else path
+        except InputError as error:
+            opened[path] = str(error)
+    found = open_meshes(list(located.values()))
+    opened |= {path: found[file] for path, file in located.items()}
+    return {path: opened[path] for path in paths}
 
 
 def _opened_one(path: Path) -> Mesh:

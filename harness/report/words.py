@@ -63,7 +63,11 @@ def leaf_label(leaf: str, value: object) -> str:
 
     >>> leaf_label("backend", "fcl"), leaf_label("shape", "hull"), leaf_label("dt", 1 / 60)
     ('fcl', 'shape hull', 'dt 1/60')
+    >>> leaf_label("within", None)
+    'no within'
     """
+    if value is None or value != value:  # NaN, as tables have it
+        return f"no {leaf}"
     text = leaf_text(value)
     return text if leaf in _SELF_EVIDENT else f"{leaf} {text}"
 

@@ -45,6 +45,14 @@ def test_wrong_input_is_one_sentence_and_exit_2(words, reason, capsys):
     assert "\n" not in said
 
 
+def test_files_of_installed_packages_are_named_as_experiments_name_them(capsys):
+    assert main(["mesh", "inspect", "package:pybullet_data/duck.obj", "package:pybullet_data/dukc.obj", "--json"]) == 2
+    told = capsys.readouterr()
+    (duck,) = json.loads(told.out)["meshes"]
+    assert (duck["file"], duck["faces"]) == ("package:pybullet_data/duck.obj", 4212)
+    assert 'did you mean "package:pybullet_data/duck.obj"?' in told.err
+
+
 def test_inspect_says_the_facts_in_the_unit_of_the_file(capsys):
     trimesh.creation.box(extents=[2, 2, 2]).export("cube.stl")
     Path("bad.obj").write_text("nonsense")
