@@ -16,12 +16,15 @@ import numpy as np
 from harness.kernel import kernel, strict_step
 from harness.narrowphase.free_flight import Motion, orientation, place, turning_speed
 from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hull_distance, relative_pose
+from harness.narrowphase.revolution import apart_from_wall_until, apart_until
 from harness.narrowphase.support import SupportMap, support
 from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, scaled, turned, turned_back
 from harness.narrowphase.verdicts import SearchVerdict
 
 # Steps after which a search is given up where it stands. Ordinary ones take 2 to 50.
 MOST_STEPS = 1000
+# Steps from one look at what the bodies sweep to the next: a body that spins fast and approaches slowly takes so many.
+STEPS_PER_SWEEP = 128
 # Trials of the length of a step.
 MOST_TRIALS = 3
 
@@ -134,6 +137,8 @@ def time_of_impact(
             longer = open_for(one, other, Gap(axis, room, drift, arm_a, arm_b))
             wait = longer if longer > wait else wait
         time += wait
+        if step % STEPS_PER_SWEEP == 0:
+            time = apart_until(hull_a, hull_b, a, b, time)
         if time > end:
             return Impact(SearchVerdict.NEVER, end, gap, axis, start, step)
     return Impact(SearchVerdict.STALLED, time, gap, axis, start, MOST_STEPS)
@@ -213,6 +218,8 @@ def time_of_wall_impact(
         if closing <= 0.0:
             return Impact(SearchVerdict.NEVER, np.inf, gap, inward, COLD_START, step)
         time += gap / closing
+        if step % STEPS_PER_SWEEP == 0:
+            time = apart_from_wall_until(hull, body, inward, half, time)
         if time > end:
             return Impact(SearchVerdict.NEVER, end, gap, inward, COLD_START, step)
     return Impact(SearchVerdict.STALLED, time, gap, inward, COLD_START, MOST_STEPS)

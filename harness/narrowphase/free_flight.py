@@ -112,3 +112,9 @@ def fastest_passing(a: Motion, b: Motion) -> float:
     """At most how fast a point of one body passes one of the other, m/s."""
     drift = minus(b.velocity, a.velocity)
     return sqrt(dot(drift, drift)) + sqrt(dot(a.spin, a.spin)) * a.reach + sqrt(dot(b.spin, b.spin)) * b.reach
+
+
+@kernel
+def speed_of_points(body: Motion) -> float:
+    """At most how fast a point of a body moves, m/s."""
+    return sqrt(dot(body.velocity, body.velocity)) + sqrt(dot(body.spin, body.spin)) * body.reach

@@ -4,7 +4,7 @@ import math
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from matplotlib.markers import MarkerStyle
 from matplotlib.ticker import MaxNLocator
@@ -86,13 +86,16 @@ def test_markers_are_as_large_as_matplotlib_draws_them(marker):
 @given(st.floats(-1e6, 1e6), st.floats(1e-3, 1e6), st.integers(3, 7), st.sampled_from([(1, 2, 2.5, 5), (1, 2, 5)]))
 def test_even_numbers_are_those_of_matplotlib(low, span, most, steps):
     high = low + span
-    inside = 1e-9 * span  # whether a number at the edge is within it hangs on the last digit
+    # whether a number on a bound is within it hangs on the last digit, and on it how many there are
+    tried = [step * 10.0**power for power in range(-6, 7) for step in steps if step * 10.0**power <= span]
+    assume(all(abs(bound / step - round(bound / step)) > 1e-6 for bound in (low, high) for step in tried[-12:]))
     theirs = [float(value) for value in MaxNLocator(most, steps=[*steps, 10]).tick_values(low, high)]
-    ours = even_numbers(low, high, most, steps)
-    for found, others in ((ours, theirs), (theirs, ours)):
-        for value in found:
-            if low + inside < value < high - inside:
-                assert min(abs(value - other) for other in others) < 1e-6 * span
+    theirs = [value for value in theirs if low < value < high]
+    assert even_numbers(low, high, most, steps) == pytest.approx(theirs, abs=1e-6 * span)
+
+
+def test_a_number_that_rounding_takes_beyond_a_bound_lies_on_it():
+    assert even_numbers(1.02, 1.0278125, 3) == pytest.approx([1.02, 1.025])  # 1.02 / 0.005 is more than 204
 
 
 def test_a_range_without_width_has_one_number():

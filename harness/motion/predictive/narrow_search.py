@@ -9,9 +9,13 @@ from harness.motion.predictive.windows import close
 from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
 from harness.narrowphase.body_shapes import shape_of
 from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
+from harness.narrowphase.free_flight import fastest_passing, speed_of_points
 from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
 from harness.narrowphase.tree_pairs import NodePair
 from harness.narrowphase.verdicts import SearchVerdict
+
+UNSEEN = 0.01
+"""Of a size: how far points may pass each other in the time that is waited where a search cannot get on."""
 
 
 @kernel
@@ -55,8 +59,9 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     window.time = now + time
     # What has just parted cannot touch but by rounding
     if verdict == SearchVerdict.STALLED or (phase == Phase.PARTING and time == 0.0):
-        if time < world.rules.cooldown:
-            window.time = now + world.rules.cooldown
+        wait = longest_wait(world.rules.cooldown, fastest_passing(a, b), 0.5 * (a.size + b.size))
+        if time < wait:
+            window.time = now + wait
             counts.stalled_events += 1
     elif coarse:
         window.phase = Phase.NEAR
@@ -64,6 +69,19 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
         window.phase = Phase.PARTING
     else:
         window.phase = Phase.TOUCHING if phase == Phase.UNSURE and time == 0.0 else Phase.DUE
+
+
+@kernel
+def longest_wait(cooldown: float, speed: float, size: float) -> float:
+    """How long a search that cannot get on may wait: points must not pass unseen, and fast ones pass in no time.
+
+    Parameters
+    ----------
+    cooldown : s, that a mean sphere waits
+    speed : at most that of one point against another
+    size : of a body, in the same unit of length
+    """
+    return min(cooldown, UNSEEN * size / speed) if speed > 0.0 else cooldown
 
 
 @kernel
@@ -87,6 +105,8 @@ def search_wall(solid: SolidWorld, k: int, axis: int, now: float) -> None:
     window.time = now + found.time
     if found.verdict == SearchVerdict.FOUND:
         window.phase = Phase.DUE
-    elif found.time < rules.cooldown:
-        window.time = now + rules.cooldown
+        return
+    wait = longest_wait(rules.cooldown, speed_of_points(flight), flight.size)
+    if found.time < wait:
+        window.time = now + wait
         counts.stalled_events += 1

@@ -79,6 +79,10 @@ def round_numbers(bounds: tuple[float, float], logarithmic: bool, most: int) -> 
     return inside[:: math.ceil(len(inside) / most)]
 
 
+EDGE = 1e-9
+"""Of a step: a number that is no farther outside of the bounds lies on one, but for rounding."""
+
+
 def even_numbers(low: float, high: float, most: int, steps: Sequence[float] = (1, 2, 2.5, 5)) -> list[float]:
     """The multiples within bounds of a round step, as matplotlib's `MaxNLocator` chooses it.
 
@@ -95,7 +99,8 @@ def even_numbers(low: float, high: float, most: int, steps: Sequence[float] = (1
     enough = next(place for place, step in enumerate(ordered) if step >= (high - low) / most)
     found: list[float] = []
     for step in ordered[enough::-1]:
-        found = [place * step for place in range(math.ceil(low / step), math.floor(high / step) + 1)]
+        first, last = math.ceil(low / step - EDGE), math.floor(high / step + EDGE)
+        found = [place * step for place in range(first, last + 1)]
         if len(found) > 1:
             break
     return found
