@@ -12,6 +12,7 @@ import pandas as pd
 
 from harness.measure.metrics import METRICS
 from harness.report.arrange import arrange
+from harness.report.atlas import AtlasPart
 from harness.report.backends.correctness import Correctness
 from harness.report.criteria import refusals
 from harness.report.family import Family
@@ -44,6 +45,7 @@ class ExperimentPage:
     known : what comparisons at its poses have found
     all_pages : those of all experiments, this one among them
     family : the comparisons of all of them; None where this one stands alone
+    surveyed : what engines were found to say of its families of poses
     database : the results file, where a replay may be kept
     """
 
@@ -56,6 +58,7 @@ class ExperimentPage:
     all_pages: Sequence[ExperimentPage] = ()
     database: str | Path | None = None
     family: Family | None = None
+    surveyed: Sequence[AtlasPart] = ()
 
     @property
     def href(self) -> str:
@@ -92,7 +95,7 @@ class ExperimentPage:
     @cached_property
     def findings(self) -> Findings:
         """What it found, in sentences."""
-        return findings(self.record, self.arrangement, self.growths)
+        return findings(self.record, self.arrangement, self.growths, self.surveyed)
 
     @cached_property
     def figures(self) -> dict[str, list[Figure]]:

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from harness.report.atlas import AtlasPart
 from harness.report.criteria import refusals
 from harness.report.missing import is_judged
 from harness.report.quantity import number, plural, quantity
 from harness.report.ranking import Growth
+from harness.report.sentences.atlas import atlas_sentences
 from harness.report.sentences.credit import credit_sentences
 from harness.report.sentences.crossings import crossing_sentences
 from harness.report.sentences.growth import change_sentences, exponent_sentences
@@ -36,18 +38,23 @@ class Findings:
         return (*self.sentences, *self.failures, Markup("Nothing was measured yet."))[0]
 
 
-def findings(record: ExperimentRecord, arrangement: Arrangement, growths: Sequence[Growth]) -> Findings:
-    """The findings of an experiment."""
+def findings(
+    record: ExperimentRecord, arrangement: Arrangement, growths: Sequence[Growth], surveyed: Sequence[AtlasPart] = ()
+) -> Findings:
+    """The findings of an experiment; `surveyed` is what engines were found to say of its families of poses."""
     sentences = [
+        *map(Markup.escape, atlas_sentences(surveyed)),
         *leader_sentences(arrangement),
         *crossing_sentences(arrangement),
         *exponent_sentences(arrangement, growths),
         *change_sentences(arrangement),
     ]
-    if sentences:  # which name methods
+    if sentences and not surveyed:  # which name methods
         sentences += credit_sentences(arrangement)
     sentences += _outcomes([row for row in record.claims if is_judged(row)], "claim")
-    if not sentences and any(not point.good.empty for point in arrangement.points):
+    # the one run of an experiment with families has no frames: its poses are asked by a comparison
+    families = (record.specification.get("measure") or {}).get("families")
+    if not sentences and not families and any(not point.good.empty for point in arrangement.points):
         sentences += _single(arrangement)
     kept = [row for row in record.expectations if row.verdict == "holds"]
     if record.expectations and len(kept) == len(record.expectations):

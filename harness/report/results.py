@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from harness.report.accuracy.experiment import ExperimentAccuracy, accuracy_of
+from harness.report.atlas import AtlasResults
 from harness.report.backends.comparisons import Comparisons
 from harness.report.backends.correctness import correctness, newest
 from harness.report.experiment import ExperimentPage
@@ -62,6 +63,7 @@ class Results:
                     pages,
                     self.database,
                     self.family,
+                    AtlasResults.of(Comparisons(compared)).parts,
                 )
             )
         return pages

@@ -1,10 +1,12 @@
 """The page of the atlas: what was asked stands beside what it was asked of, and all bodies are counted together."""
 
 import re
+from datetime import datetime, timezone
 from html import unescape
 
 from harness.report.site import render
 from harness.store.database import Database
+from harness.store.records import PointRow
 
 
 def cell(family, mesh, query=None, wrong=0, beyond=0, deepest=0.0):
@@ -39,3 +41,23 @@ def test_gaps_have_sentences_and_matrices_of_their_own(tmp_path):
     assert "fcl is off by more than its tolerance in 2 answers on distance, by 0.5" in text
     assert "All bodies together" not in text
     assert len([name for name in pages if name.startswith("atlas-") and name.endswith(".svg")]) == 2
+
+
+def test_an_experiment_with_families_has_found_what_the_engines_said_and_no_times_of_a_run_without_frames(tmp_path):
+    path = tmp_path / "x.db"
+    leaves = {"backend": "fcl", "algorithm": "grid", "shape": "hull", "mesh": "cube.ply", "count": 2}
+    with Database.open(path) as database:
+        number = database.begin_sweep("harness sweep", None, "0.1.0", {"fingerprint": "m"}, {})
+        specification = {"measure": {"families": ["random"], "repeats": 1}}
+        database.list_experiment(number, "atlas/mine", "Mine", "?", "", specification, [PointRow("p", leaves)])
+        metrics = {"run_seconds": (0.0, "s"), "events": (0.0, "1")}
+        database.add_run(
+            number, "p", 0, "ok", None, None, metrics, True, started=datetime.now(timezone.utc)
+        )  # fmt: skip
+        database.finish_sweep(number)
+    told = dict(render(path))["findings.md"]
+    assert "0 s" not in told
+    assert "Nothing was measured yet." in told
+    page(path, [cell("random", "cube.ply", wrong=3, beyond=1, deepest=0.25)])
+    told = dict(render(path))["findings.md"].replace("\u202f", "")
+    assert "1000 verdicts, each held against exact arithmetic: 3 are wrong, 1 of them" in told

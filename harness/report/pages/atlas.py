@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from harness.report.atlas import AtlasPart, AtlasResults
 from harness.report.figure import figures_of
 from harness.report.page import Content, Page
-from harness.report.quantity import number, plural
+from harness.report.quantity import number
 from harness.report.results import Results
+from harness.report.sentences.atlas import atlas_sentences
 from harness.report.table import Column, Entry, Table, plain, words
 from harness.vocabulary import FAMILIES
 
@@ -24,7 +25,7 @@ def _content(results: Results) -> Content | None:
     ]
     seen = {family for part in atlas.parts for family in part.families}
     values = {
-        "summary": _summary(atlas),
+        "summary": atlas_sentences(atlas.parts),
         "parts": parts,
         "overall": figures["overall"],
         "families": [(family, FAMILIES[family]) for family in FAMILIES if family in seen],
@@ -33,56 +34,6 @@ def _content(results: Results) -> Content | None:
         "commands": list(dict.fromkeys(record.command for record in atlas.records)),
     }
     return Content("atlas.html.j2", values, results.records, [*figures["overall"], *figures["matrix"]], atlas.files)
-
-
-def _summary(atlas: AtlasResults) -> list[str]:
-    cells = [cell for part in atlas.parts if part.query == "collision" for cell in part.cells.values()]
-    said = _on_collisions(cells) if cells else []
-    for query in dict.fromkeys(part.query for part in atlas.parts if part.query != "collision"):
-        said += _on_gaps(query, [cell for part in atlas.parts if part.query == query for cell in part.cells.values()])
-    return said
-
-
-def _on_gaps(query: str, cells: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What was found of gaps, or of whether bodies are near."""
-    verdicts, beyond = sum(cell["verdicts"] for cell in cells), sum(cell["beyond"] for cell in cells)
-    said = [
-        f"Asked for the {query}: {plural(verdicts, 'answer')}, each held against exact distances: {number(beyond)} are "
-        "off by more than the engine's tolerance."
-    ]
-    engines = sorted({cell["engine"] for cell in cells})
-    for engine in engines:
-        mine = [cell for cell in cells if cell["engine"] == engine and cell["beyond"]]
-        if mine:
-            worst = max(mine, key=lambda cell: cell["deepest"])
-            count = plural(sum(cell["beyond"] for cell in mine), "answer")
-            said.append(
-                f"{engine} is off by more than its tolerance in {count} on {query}, by {number(worst['deepest'])} of a "
-                f"size at the most ({worst['family']})."
-            )
-    right = [engine for engine in engines if not any(cell["beyond"] for cell in cells if cell["engine"] == engine)]
-    return [*said, f"Never off by more than their tolerance: {', '.join(right)}."] if right else said
-
-
-def _on_collisions(cells: Sequence[Mapping[str, Any]]) -> list[str]:
-    verdicts, wrong = sum(cell["verdicts"] for cell in cells), sum(cell["wrong"] for cell in cells)
-    beyond = sum(cell["beyond"] for cell in cells)
-    said = [
-        f"{plural(verdicts, 'verdict')}, each held against exact arithmetic: {number(wrong)} are wrong, "
-        f"{number(beyond)} of them by more than the engine's tolerance."
-    ]
-    for engine in sorted({cell["engine"] for cell in cells}):
-        mine = [cell for cell in cells if cell["engine"] == engine]
-        worst = max(mine, key=lambda cell: (cell["beyond"] > 0, cell["deepest"]))
-        if worst["beyond"]:
-            said.append(
-                f"{engine} is wrong about {plural(sum(cell['beyond'] for cell in mine), 'pose')} beyond its tolerance, "
-                f"the farthest {number(worst['deepest'])} of a size from touching ({worst['family']})."
-            )
-    right = sorted({cell["engine"] for cell in cells} - {cell["engine"] for cell in cells if cell["beyond"]})
-    if right:
-        said.append(f"Never wrong beyond their tolerance: {', '.join(right)}.")
-    return said
 
 
 def _table(part: AtlasPart) -> Table:
