@@ -332,16 +332,36 @@ def end(child: int) -> Ending:
 
 def _kill_descendants(process: int) -> None:
     """Kill all that a process has started: again and again, since what is not dead yet may start more."""
+    calm = 0
     with suppress(psutil.NoSuchProcess):
-        while sum(_killed(started) for started in psutil.Process(process).children(recursive=True)):
-            time.sleep(0.001)
+        while calm < 2:  # a list that is read while a process ends may lack another
+            calm = 0 if sum(_killed(started) for started in _descendants(process)) else calm + 1
+
+
+def _descendants(process: int) -> list[psutil.Process]:
+    """Those of a process, as the kernel lists them; psutil looks at every process of the machine, which takes long."""
+    found, ahead = [], [process]
+    while ahead:
+        try:
+            tasks = os.listdir(f"/proc/{(parent := ahead.pop())}/task")
+            for task in tasks:
+                with open(f"/proc/{parent}/task/{task}/children", encoding="ascii") as listed:
+                    children = [int(number) for number in listed.read().split()]
+                ahead += children
+                for child in children:
+                    with suppress(psutil.NoSuchProcess):
+                        found.append(psutil.Process(child))
+        except OSError:  # it has ended, or this kernel lists none
+            if parent == process:
+                return psutil.Process(process).children(recursive=True)
+    return found
 
 
 def _killed(process: psutil.Process) -> bool:
     """Whether there was a process left to kill: it may have ended, or not be ours to end."""
     try:
         process.kill()
-        return process.status() != psutil.STATUS_ZOMBIE
+        return bool(process.status() != psutil.STATUS_ZOMBIE)
     except psutil.Error:
         return False
 

@@ -88,7 +88,7 @@ def compare_asked(
 
     def begin(place: int) -> None:
         if not quiet:
-            print(f"{tasks[place].experiment.name}: {tasks[place].said}", file=sys.stderr)
+            print(f"{tasks[place].experiment.name}: {tasks[place].said}", file=sys.stderr, flush=True)
 
     for place, compared in shared_out([task.make for task in tasks], usable_cores(), begin):
         experiment = tasks[place].experiment.name
