@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -43,7 +44,7 @@ def findings(
 ) -> Findings:
     """The findings of an experiment; `surveyed` is what engines were found to say of its families of poses."""
     sentences = [
-        *map(Markup.escape, atlas_sentences(surveyed)),
+        *(Markup(html.escape(sentence, quote=False)) for sentence in atlas_sentences(surveyed)),
         *leader_sentences(arrangement),
         *crossing_sentences(arrangement),
         *exponent_sentences(arrangement, growths),
