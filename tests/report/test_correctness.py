@@ -132,3 +132,16 @@ def test_a_page_says_where_bodies_had_to_wait_that_such_a_motion_is_ill_posed(re
 def test_where_there_is_a_reference_it_says_who_is_right(report_of):
     page = dispute_pages(report_of, {"brute-force": 1, "grid": 2, "tree": 1}, reference={"algorithm": "predictive"})
     assert "saw different hits" not in page
+
+
+def test_a_method_that_counts_otherwise_in_a_run_of_the_same_motion_is_named(report_of):
+    def fate(parameters, repeat, metrics):
+        if parameters["algorithm"] == "tree" and parameters["count"] == 40:
+            metrics["pair_hits"] = 35.0 if repeat else 327.0
+
+    swept = {"count": [10, 40], "zip": [{"backend": "fcl", "algorithm": name} for name in ("grid", "tree")]}
+    page = report_of(swept=swept, fate=fate)["pages/x/index.html"]
+    said = "<strong>fcl tree is not the same twice</strong> in 1 point: in runs of one and the same motion"
+    assert said in page.replace("\u00a0", " ")
+    assert "from 35 to 327" in page.replace("\u00a0", " ")
+    assert "not the same twice" not in report_of(swept=swept)["pages/x/index.html"]

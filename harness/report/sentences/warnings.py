@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
 from markupsafe import Markup
 
+from harness.measure.metrics import METRICS
 from harness.measure.statistics import NOISY_ABOVE
 from harness.report.point import BUSY_ABOVE, MeasuredPoint
 from harness.report.quantity import number, plural
 from harness.report.series import Arrangement
+from harness.report.words import metric_title
 from harness.store.records import ExperimentRecord
 from harness.vocabulary import MethodName
 
@@ -47,6 +52,7 @@ def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> lis
                 "known who is right, which <code>harness compare</code> finds out."
             ).format(" and ".join(names), plural(len(doubted), "point"))
         )
+    found += _not_the_same_twice(arrangement.points)
     escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
     if escaped:
         found.append(Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point")))
@@ -99,6 +105,31 @@ def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> lis
             Markup("Noisy: fewer than nine in ten medians are known to {}.").format(f"±{NOISY_ABOVE * 100:.0f} %")
         )
     return found
+
+
+_EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)
+
+
+def _not_the_same_twice(points: Sequence[MeasuredPoint]) -> list[Markup]:
+    """Methods whose runs of one motion count otherwise, a sentence each: every run begins with the same numbers."""
+    changing: dict[str, list[MeasuredPoint]] = {}
+    for point in points:
+        if len(point.good) > 1 and any(np.ptp(point.values(name)) > 0.0 for name in _EXACT if len(point.values(name))):
+            changing.setdefault(MethodName.of(point.parameters).label, []).append(point)
+    sentences = []
+    for method, where in changing.items():
+        name = next(name for name in (*_TOLD, *_EXACT) if len(where[0].values(name)) and np.ptp(where[0].values(name)))
+        values = where[0].values(name)
+        sentences.append(
+            Markup(
+                "<strong>{} is not the same twice</strong> in {}: in runs of one and the same motion {} from {} to {}."
+            ).format(method, plural(len(where), "point"), metric_title(name), *map(number, (min(values), max(values))))
+        )
+    return sentences
+
+
+_TOLD = ("pair_hits", "missed_hits", "near_pairs")
+"""What is told of several counts that change."""
 
 
 def _capital(text: str) -> str:
