@@ -67,19 +67,20 @@ def strict_step(function: Function) -> Function:
     return cast(Function, _Waiting(function, lambda: _widened(_njit(**_STEP)(function))))
 
 
-def instruction(code: Callable[..., Any]) -> Any:
+def instruction(code: Callable[..., Any], plain: Callable[..., Any] | None = None) -> Any:
     """What a kernel may call where numba has no function for an instruction of the machine.
 
     Parameters
     ----------
     code : takes a typing context and the types of the arguments, gives a signature and what generates the instruction,
         as `numba.extending.intrinsic` asks
+    plain : what stands for it where numba is told not to compile
     """
 
     def made() -> Any:
         from numba.extending import intrinsic
 
-        return intrinsic(code)
+        return intrinsic(code) if plain is None or compiles() else plain
 
     return _Waiting(code, made)
 
@@ -186,6 +187,13 @@ def _make_all(names: dict[str, Any]) -> None:
             names[name] = value.made()
 
 
+def compiles() -> bool:
+    """Whether numba compiles, and is not told by NUMBA_DISABLE_JIT to let Python do all, as far as that can."""
+    import numba
+
+    return not getattr(numba.config, "DISABLE_JIT", False)
+
+
 def _njit(**options: Any) -> Any:
     import numba
 
@@ -195,9 +203,8 @@ def _njit(**options: Any) -> Any:
 
 def _kept(function: Any, **options: Any) -> Any:
     """Compile, or load what was compiled before; nothing of either where numba is told not to compile."""
-    import numba
 
-    if getattr(numba.config, "DISABLE_JIT", False):
+    if not compiles():
         return function
     with own_cache(function.__module__) as folder, suppress(RuntimeError):  # of numba, where no folder takes files
         made = _njit(cache=bool(folder), **options)(function)

@@ -30,5 +30,9 @@ def _prefetch(context: Any, array: Any, row: Any) -> Any:
     return types.void(array, row), generate
 
 
+def _nothing(array: Any, row: int) -> None:
+    """A hint may be left out."""
+
+
 # Begin to read the cache line where a row of a C-contiguous array begins, without waiting for it.
-prefetch = cast(Callable[[Any, int], None], instruction(_prefetch))
+prefetch = cast(Callable[[Any, int], None], instruction(_prefetch, _nothing))

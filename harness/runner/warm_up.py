@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from harness.experiment.experiment import Point
+from harness.kernel import compiles
 from harness.methods.method import WarmUp
 from harness.methods.warm_up_scene import two_bodies
 from harness.reference.warm_up import warm_up_reference
@@ -52,6 +53,8 @@ def warm_ups(point: Point) -> Iterator[WarmUp]:
 
 
 def _compile_placement() -> None:
+    if not compiles():  # and Python cannot place dense scenes
+        return
     dense = Box(np.array([0.55, 0.55, 1.2]))  # a loose scene takes no kernel
     place(np.full(2, 0.5), dense, np.random.default_rng(0), overlap=False)
 
