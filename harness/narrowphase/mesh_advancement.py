@@ -12,6 +12,7 @@ in which few of their triangles can touch, which most contacts are found in; onl
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -51,6 +52,9 @@ AT_AIM = 1.001
 
 # Of the sum of the sizes: how near the hulls need be brought before the surfaces are searched.
 HULL_TOLERANCE = 1e-3
+# By how much points may turn faster than the centres approach before hulls are brought nearer than that: the search of
+# the surfaces takes as many steps a turn, however slowly they approach.
+SLOW = 1000.0
 
 
 class MeshShape(NamedTuple):
@@ -173,7 +177,7 @@ def time_of_mesh_impact(
     if not rest >= 0.0:
         return MeshImpact(SearchVerdict.NEVER, never, 0.0, (0.0, 0.0, 0.0), start, 0)
     a, b = seen_at(a, b, begin + entry)
-    coarse = max(tolerance, HULL_TOLERANCE * (a.size + b.size))
+    coarse = max(tolerance, hull_tolerance(a, b))
     hulls = time_of_impact(shape_a.hull, shape_b.hull, a, b, 0.0, rest, coarse, start.hulls)
     if hulls.verdict == SearchVerdict.NEVER:
         never = max(never, hulls.time)  # which is inf if they never do
@@ -191,6 +195,15 @@ def time_of_mesh_impact(
     time = never if found.verdict == SearchVerdict.NEVER else min(end, begin + (entry + found.time))
     after = MeshWarmStart(hulls.warm_start, found.leaves)
     return MeshImpact(found.verdict, time, found.gap, found.axis, after, hulls.steps + found.steps)
+
+
+@kernel
+def hull_tolerance(a: Motion, b: Motion) -> float:
+    """How near the hulls are brought before the surfaces are searched, m."""
+    drift = minus(b.velocity, a.velocity)
+    turning = sqrt(dot(a.spin, a.spin)) * a.reach + sqrt(dot(b.spin, b.spin)) * b.reach
+    share = SLOW * sqrt(dot(drift, drift)) / turning if turning > 0.0 else 1.0
+    return HULL_TOLERANCE * min(1.0, share) * (a.size + b.size)
 
 
 @kernel

@@ -130,3 +130,17 @@ def test_a_slow_approach_in_a_fast_spin_is_predicted_to_the_tolerance(shape):
     pairs = trace.walls < 0
     assert trace.times[pairs][0] == pytest.approx(found.time, abs=2e-6 / speed)
     assert outcome.metrics["advancement_steps"] < 300_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("shape", "rate", "most"), [("hull", 1e3, 1e5), ("mesh", 1e1, 4e6)])
+def test_pumpkins_that_spin_fast_and_approach_slowly_are_predicted_without_a_wait(shape, rate, most):
+    bodies = make_bodies(
+        [[-0.51, 0.01, 0.0], [0.51, 0.0, 0.02]],
+        velocities=[[5e-4, 0, 0], [-5e-4, 0, 0]],
+        spins=[[0.1, rate, 0.2], [0.3, 0.1, -0.7 * rate]],
+    )
+    scene = Scene(shape, (mesh_named("pumpkin-1753.ply"),), bodies, Box(np.full(3, 5.0)))
+    outcome = flights.fly(scene, "predictive", MotionLaw(60.0, 60.0, "elastic"))
+    assert (outcome.metrics["pair_hits"], outcome.metrics["stalled_events"]) == (1, 0)
+    assert outcome.metrics["advancement_steps"] < most

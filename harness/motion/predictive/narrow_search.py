@@ -10,7 +10,7 @@ from harness.narrowphase.advancement import time_of_impact, time_of_wall_impact
 from harness.narrowphase.body_shapes import shape_of
 from harness.narrowphase.contact_end import end_of_hull_contact, end_of_mesh_contact
 from harness.narrowphase.free_flight import fastest_passing, speed_of_points
-from harness.narrowphase.mesh_advancement import HULL_TOLERANCE, MeshWarmStart, time_of_mesh_impact
+from harness.narrowphase.mesh_advancement import MeshWarmStart, hull_tolerance, time_of_mesh_impact
 from harness.narrowphase.tree_pairs import NodePair
 from harness.narrowphase.verdicts import SearchVerdict
 
@@ -42,7 +42,7 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
             ended = end_of_hull_contact(one.hull, other.hull, a, b, 0.0, left, 2.0 * tolerance)
         verdict, time, steps = ended.verdict, ended.time, ended.steps
     elif coarse or not body.concave:
-        enough = max(tolerance, HULL_TOLERANCE * (a.size + b.size)) if coarse else tolerance
+        enough = max(tolerance, hull_tolerance(a, b)) if coarse else tolerance
         found = time_of_impact(one.hull, other.hull, a, b, 0.0, left, enough, hull_seeds)
         verdict, time, hull_seeds, steps = found.verdict, found.time, found.warm_start, found.steps
     else:
