@@ -17,7 +17,7 @@ from harness.report.methods import method_label
 from harness.report.point import METHOD, MeasuredPoint, numbers_of
 from harness.report.quantity import leaf_text
 from harness.report.series import Arrangement, Series, hashable, is_number
-from harness.report.styles import same_colour, style_of
+from harness.report.styles import styles_of
 from harness.report.words import leaf_label
 from harness.store.records import ControlRecord, ExperimentRecord
 from harness.vocabulary import METHOD_LEAVES, MethodName
@@ -60,7 +60,9 @@ def arrange(
         row = leaf_text(point.value(panel_leaf)) if report.get("map") else ""
         lines.setdefault(row + _key(point, others), []).append(point)
     names = [leaf for leaf in others if leaf != panel_leaf]
-    styles = _styles({_label(members[0].parameters, names): members[0] for members in lines.values()})
+    styles = styles_of(
+        {_label(members[0].parameters, names): MethodName.of(members[0].parameters) for members in lines.values()}
+    )
     series = []
     for members in lines.values():
         first = members[0].parameters
@@ -98,22 +100,6 @@ def _measured(record: ExperimentRecord, runs: pd.DataFrame, known: Correctness) 
         wrong = known.is_wrong(MethodName.of(row.parameters))
         points.append(MeasuredPoint(row, ordered.iloc[rows], wrong, numbers=(numbers, rows[good[rows]])))
     return points
-
-
-def _styles(series: Mapping[str, MeasuredPoint]) -> dict[str, int]:
-    """The style of each series: that of its method; of a further one of the same method the same colour, if possible.
-
-    Where one method is all there is, the series are numbered.
-    """
-    of_methods = {label: style_of(MethodName.of(point.parameters)) for label, point in series.items()}
-    if len(set(of_methods.values())) == 1 < len(of_methods):
-        return {label: place for place, label in enumerate(series)}
-    found: dict[str, int] = {}
-    reserved = set(of_methods.values())
-    for label, style in of_methods.items():
-        further = [style, *(other for other in same_colour(style) if other not in reserved), *range(24, 240)]
-        found[label] = next(other for other in further if other not in found.values())
-    return found
 
 
 def _mapped(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from harness.report.drawing import palette
 from harness.vocabulary import ALGORITHMS, MethodName
@@ -28,6 +29,26 @@ def style_of(method: MethodName) -> int:
     place = own.index(method.algorithm)
     place += place >= _EVENTS
     return place if place < min(_BACKENDS.values()) else place + len(_BACKENDS)
+
+
+def styles_of(methods: Mapping[str, MethodName]) -> dict[str, int]:
+    """The style of each series: that of its method; of a further one of the same method the same colour, if possible.
+
+    Where one method is all there is, the series are numbered.
+
+    Parameters
+    ----------
+    methods : by what the series are called
+    """
+    of_methods = {label: style_of(method) for label, method in methods.items()}
+    if len(set(of_methods.values())) == 1 < len(of_methods):
+        return {label: place for place, label in enumerate(methods)}
+    found: dict[str, int] = {}
+    reserved = set(of_methods.values())
+    for label, style in of_methods.items():
+        further = [style, *(other for other in same_colour(style) if other not in reserved), *range(24, 240)]
+        found[label] = next(other for other in further if other not in found.values())
+    return found
 
 
 def same_colour(style: int) -> list[int]:

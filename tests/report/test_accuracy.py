@@ -6,6 +6,7 @@ import pytest
 
 from harness.report.results import Results
 from harness.report.site import render
+from harness.report.styles import style_of
 from tests.report.conftest import Invented, write
 from tests.report.test_site import Outline
 
@@ -186,3 +187,11 @@ def test_runs_that_failed_leave_what_there_is(tmp_path):
     assert "Error against run time" in pages["accuracy.html"]
     nothing = Invented(**{**vars(ACCURACY), "fate": lambda *_: ("crashed", "signal 11")})
     assert "accuracy.html" not in dict(render(write(tmp_path / "y.db", [nothing])))
+
+
+def test_a_method_has_the_style_that_it_has_on_every_other_page(results, tradeoff):
+    (page,) = Results(results).pages
+    assert {curve.label: curve.style for curve in tradeoff.curves} == {
+        series.label: series.style for series in page.arrangement.series
+    }
+    assert [curve.style for curve in tradeoff.curves] == [style_of(curve.method) for curve in tradeoff.curves]

@@ -19,6 +19,7 @@ from harness.report.methods import method_label
 from harness.report.point import MeasuredPoint
 from harness.report.ranking import times_worse, told
 from harness.report.series import Arrangement
+from harness.report.styles import styles_of
 from harness.report.words import leaf_label
 from harness.store.records import ExperimentRecord
 from harness.vocabulary import KNOBS, METHOD_LEAVES, MethodName
@@ -198,7 +199,7 @@ def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
     for point in points:
         grouped.setdefault(_key(point, _is_of_curve), []).append(point)
     leaves = _differing([members[0] for members in grouped.values()], _is_of_curve)
-    made: list[Curve] = []
+    made: list[tuple[MethodName, str, tuple[Setting, ...]]] = []
     for members in grouped.values():
         first = members[0].parameters
         method = MethodName.of(first)
@@ -206,8 +207,9 @@ def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
         label = method_label(first, leaves) or method.label
         if settings:
             ordered = tuple(sorted(settings, key=lambda found: found.cost.median))
-            made.append(Curve(method, label, len(made), ordered))
-    return tuple(made)
+            made.append((method, label, ordered))
+    styles = styles_of({label: method for method, label, _ in made})
+    return tuple(Curve(method, label, styles[label], ordered) for method, label, ordered in made)
 
 
 def _is_of_curve(leaf: str) -> bool:
