@@ -335,7 +335,11 @@ def _kill_descendants(process: int) -> None:
     calm = 0
     with suppress(psutil.NoSuchProcess):
         while calm < 2:  # a list that is read while a process ends may lack another
-            calm = 0 if sum(_killed(started) for started in _descendants(process)) else calm + 1
+            if sum(_killed(started) for started in _descendants(process)):
+                calm = 0
+                time.sleep(0.001)
+            else:
+                calm += 1
 
 
 def _descendants(process: int) -> list[psutil.Process]:

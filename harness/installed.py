@@ -15,7 +15,7 @@ from harness.kernel_cache import PACKAGE
 
 def installed() -> str:
     """A hash of the sources of this program, of the interpreter, and of all that `sys.path` offers to import."""
-    return hashlib.sha256(f"{_sources()} {sys.version} {importable(tuple(sys.path))}".encode()).hexdigest()
+    return hashlib.sha256(f"{sources_hash()} {sys.version} {importable(tuple(sys.path))}".encode()).hexdigest()
 
 
 @lru_cache(maxsize=8)
@@ -42,7 +42,8 @@ def _in_folder(folder: str) -> list[str]:
 
 
 @cache
-def _sources() -> str:
+def sources_hash() -> str:
+    """A hash of the sources of this program alone."""
     sources = hashlib.sha256()
     for folder, folders, names in os.walk(PACKAGE):
         folders[:] = sorted(name for name in folders if name != "__pycache__")

@@ -12,6 +12,7 @@ import numpy as np
 
 from harness.experiment.experiment import Point
 from harness.experiment.schema import EngineSpec
+from harness.installed import sources_hash
 from harness.motion.answers import NearAnswers
 from harness.motion.hits import Trace
 from harness.reference.contacts import Contacts
@@ -22,7 +23,6 @@ from harness.reference.late_hits import late_hits
 from harness.reference.near_pairs import NearReference, near_reference
 from harness.reference.position_errors import ReferenceEvents, in_another_unit, position_errors
 from harness.reference.scene_contacts import onset_error, scene_contacts
-from harness.runner.key import sources_hash
 from harness.runner.point import is_stepped, law_of
 from harness.runner.reference_cache import kept
 from harness.runner.scene_of_point import build_scene

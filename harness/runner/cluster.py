@@ -25,9 +25,9 @@ from typing import TYPE_CHECKING, Any
 
 from harness.backends.registry import packages
 from harness.errors import InputError
+from harness.installed import sources_hash
 from harness.measure.machine import fingerprint, machine_facts, package_versions
 from harness.runner.executor import FinishedJob
-from harness.runner.key import sources_hash
 from harness.runner.schedule import Job
 from harness.runner.servers import Servers, task_of
 from harness.runner.task import Report, Task

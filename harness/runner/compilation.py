@@ -14,7 +14,7 @@ from importlib.metadata import version
 from harness import kept_files
 from harness.backends.registry import ours
 from harness.experiment.experiment import Point
-from harness.runner.key import sources_hash
+from harness.installed import sources_hash
 from harness.runner.point import is_stepped
 from harness.runner.warm_up import warm_ups
 from harness.vocabulary import Shape

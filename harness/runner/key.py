@@ -5,11 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 from harness.experiment.experiment import Point
+from harness.installed import sources_hash
 from harness.scene.scene_files import SceneFiles
 
 
@@ -33,13 +32,3 @@ def _renamed(mesh: Any, names: Mapping[str, str]) -> Any:
     if isinstance(mesh, dict):
         return {"choice": [names[name] for name in mesh["choice"]]}
     return None if mesh is None else names[mesh]
-
-
-@cache
-def sources_hash() -> str:
-    package = Path(__file__).resolve().parents[1]
-    content = hashlib.sha256()
-    for file in sorted(package.rglob("*.py")):
-        content.update(f"{file.relative_to(package).as_posix()}\n".encode())
-        content.update(file.read_bytes())
-    return content.hexdigest()

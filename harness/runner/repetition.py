@@ -11,8 +11,8 @@ backend as it was loaded, once and until the sample is long enough. Clocks are t
 first; everything else, counters above all, is what the first flight has counted.
 
 Only the first is observed. What observes a frame is outside of the clocks, and yet they see it: it takes the place of
-the method's data in the caches, and frames of 10 µs took 2.7 times as long for it, those of 0.1 ms up to 1.4 times,
-those of 1 ms no longer. So a first flight counts only where its frames are long.
+the method's data in the caches, and frames of 10 to 150 µs took up to three times as long for it, those of 0.3 ms up to
+1.2 times, those of 1 ms no longer. So a first flight counts only where its frames are long.
 """
 
 from __future__ import annotations
