@@ -46,7 +46,7 @@ def least_traffic(turning: bool) -> int:
 
 
 def copy_bandwidth() -> float:
-    """B/s that one core reads and writes while it copies an array larger than its caches: the fastest of some copies."""
+    """B/s that one core reads and writes while it copies an array larger than its caches: the best of some copies."""
     source = np.zeros(_COPIED, np.uint8)
     target = np.ones_like(source)  # touched once, so that no copy waits for its pages
     source[:] = 1

@@ -15,6 +15,7 @@ METRICS = (
     ),
     _on_demand(
         "times_of_memory", "1", "cost",
-        "run_seconds / frames, over the time of frame_bytes_per_body of all bodies at copy_bandwidth", "times of memory",
+        "run_seconds / frames, over the time of frame_bytes_per_body of all bodies at copy_bandwidth",
+        "times of memory",
     ),
 )  # fmt: skip
