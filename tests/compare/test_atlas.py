@@ -164,7 +164,9 @@ def wrong_about(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["fcl", "pybullet", "mujoco", "trimesh", "coal", "rapier3d", "parry3d", "drake"])
+@pytest.mark.parametrize(
+    "name", ["fcl", "pybullet", "mujoco", "trimesh", "coal", "rapier3d", "parry3d", "drake", "mujoco_warp"]
+)
 def test_a_reproduction_asks_the_library_and_checks_its_proof_and_one_that_shows_nothing_is_not_written(name, tmp_path):
     pytest.importorskip({"parry3d": "py_parry3d", "drake": "pydrake"}.get(name, name))
     from harness.compare.library_calls import CALLS
