@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,11 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # the first call of a kernel compiles it, so a time limit an example would fail at random
 settings.register_profile("harness", deadline=None)
+settings.register_profile("quick", settings.get_profile("harness"), max_examples=25)
 settings.load_profile("harness")
+
+# What collecting makes is all kept: a search for garbage would find nothing, again and again.
+gc.disable()
 
 HERE = Path(__file__).parent
 
@@ -64,8 +69,14 @@ LONGEST_FILES = (
     "browser/test_live.py",
 )
 LONGEST = ("runner", "compare", "narrowphase", "cli", "motion")
-# Rooms whose tests share what takes seconds to make, such as all pages of a report: one worker has them all.
-TOGETHER = ("report",)
+# Rooms whose tests share what takes seconds to make, all pages of a report and servers: one worker has them all.
+TOGETHER = ("report", "cli")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Try a quarter of the examples where slow tests are left out."""
+    if config.option.markexpr == "not slow":
+        settings.load_profile("quick")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -80,6 +91,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def pytest_collection_finish() -> None:
     """What is there by now stays: the garbage collector, and those of forked processes, need not look at it again."""
+    gc.enable()
     gc.collect()
     gc.freeze()
 
@@ -96,6 +108,16 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
     config.option.loadscopereorder = False
     return Scheduling(config, log)
+
+
+def slow_beyond(values: Iterable[Any], count: int = 1) -> list[Any]:
+    """Parameters of which the quick tests have the first few only."""
+    return [pytest.param(value, marks=() if place < count else pytest.mark.slow) for place, value in enumerate(values)]
+
+
+def examples(count: int) -> int:
+    """How many examples to try where the whole suite tries so many."""
+    return max(1, count * settings.default.max_examples // 100)
 
 
 def make_bodies(positions, velocities=None, *, sizes=None, masses=None, spins=None, quaternions=None) -> Bodies:

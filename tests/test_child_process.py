@@ -215,6 +215,7 @@ def test_what_is_beyond_a_limit_is_refused(way):
         assert child.receive(SOON) == b"refused"
 
 
+@pytest.mark.slow
 def test_more_cpu_time_than_allowed_ends_the_child():
     with Child.fork(beyond_processor_time) as child:
         assert child.receive(SOON) == "ended"

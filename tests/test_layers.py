@@ -50,7 +50,20 @@ KNOWS = {
     "pair": {"experiment", "scene", "narrowphase"},
     "cli": FLIGHT | {"experiment", "reference", "store", "compare", "truth", "runner", "replay", "report"},
 }
-LIBRARIES = {"fcl", "pybullet", "coal", "igl", "ipctk", "mujoco", "py_parry3d", "pydrake", "rapier3d", "trimesh"}
+LIBRARIES = {
+    "fcl",
+    "pybullet",
+    "coal",
+    "igl",
+    "ipctk",
+    "mujoco",
+    "mujoco_warp",
+    "py_parry3d",
+    "pydrake",
+    "rapier3d",
+    "trimesh",
+    "warp",
+}
 
 
 def rooms_imported(file: Path) -> set[str]:

@@ -136,13 +136,15 @@ def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
 
     A name of ours stays ours, whoever declares it besides.
     """
-    pointed = [(entry.name, _pointed(entry)) for entry in entry_points(group=GROUP)]
+    entries = entry_points(group=GROUP)
+    # each reading of a name reads all that its package says of itself
+    packages = {package: package.name for package in {entry.dist for entry in entries} if package is not None}
+    pointed = [(entry.name, _pointed(entry, packages[entry.dist] if entry.dist else "")) for entry in entries]
     theirs = {name: found for name, found in pointed if not found.ours}
     return {**theirs, **_in_this_folder(), **{name: found for name, found in pointed if found.ours}}
 
 
-def _pointed(entry: EntryPoint) -> Declaration:
-    package = entry.dist.name if entry.dist else ""
+def _pointed(entry: EntryPoint, package: str) -> Declaration:
     extras = _extras(entry)
     command = f"pip install '{package or PROGRAM}[{','.join(extras)}]'" if extras else None
     needed = _required(package, *extras) if package else frozenset[str]()

@@ -89,6 +89,23 @@ mujoco.mj_kinematics(model, data)
 mujoco.mj_collision(model, data)
 return data.ncon > 0
 """
+_MUJOCO_WARP = """
+spec = mujoco.MjSpec()
+spec.option.ccd_iterations = 200
+for name, vertices in (("a", A), ("b", B)):
+    body = spec.worldbody.add_body()
+    body.add_freejoint()
+    spec.add_mesh(name=name, uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=1.0)
+model = spec.compile()
+data = mujoco.MjData(model)
+data.qpos[:] = [*P, *Q, *R, *S]
+with warp.ScopedDevice("cpu"):
+    kernels, state = mujoco_warp.put_model(model), mujoco_warp.put_data(model, data, nconmax=64, njmax=1)
+    mujoco_warp.kinematics(kernels, state)
+    mujoco_warp.collision(kernels, state)
+    return bool(state.nacon.numpy()[0] > 0)
+"""
 _PYBULLET = """
 pybullet.connect(pybullet.DIRECT)
 bodies = []
@@ -186,6 +203,13 @@ CALLS: dict[tuple[str, Shape], Call] = {
     ("trimesh", "hull"): _trimesh(),
     ("trimesh", "mesh"): _trimesh(),
     ("mujoco", "hull"): Call("mujoco", "mujoco.__version__", "import mujoco", _MUJOCO, unit_of),
+    ("mujoco_warp", "hull"): Call(
+        "mujoco_warp",
+        _PACKAGE.format("mujoco-warp"),
+        f"{_VERSION}import mujoco\nimport mujoco_warp\nimport warp",
+        _MUJOCO_WARP,
+        unit_of,
+    ),
     ("drake", "hull"): Call(
         "drake", _PACKAGE.format("drake"), f"{_VERSION}import pydrake.all as drake", _DRAKE, unit_of
     ),

@@ -26,6 +26,7 @@ NATIVE_QUERIES: dict[str, tuple[Query, ...]] = {
     **dict.fromkeys(("coal", "drake", "mujoco", "pybullet", "trimesh"), ("collision", "tolerance", "distance")),
     "cgal": ("collision",),
     "ipctk": ("collision", "impact"),
+    "mujoco_warp": ("collision",),
     "parry3d": ("collision", "tolerance"),
 }
 

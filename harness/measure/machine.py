@@ -8,9 +8,11 @@ import os
 import platform
 import subprocess
 from collections.abc import Iterable
-from importlib.metadata import PackageNotFoundError, version
+from functools import cache
 from pathlib import Path
 from typing import Any
+
+from harness.installed import version_of
 
 
 def machine_facts() -> dict[str, Any]:
@@ -32,17 +34,16 @@ def fingerprint(facts: dict[str, Any]) -> str:
 
 def package_versions(packages: Iterable[str]) -> dict[str, str]:
     """The versions of packages; those not installed are left out."""
-    found = {}
-    for package in sorted(packages):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
+    versions = {package: version_of(package) for package in sorted(packages)}
+    return {package: version for package, version in versions.items() if version is not None}
 
 
+@cache
 def source_commit() -> str | None:
-    """The git commit of this code, with "+" if it was changed since; None where there is no git."""
+    """The git commit of this code, with "+" if it was changed since; None where there is no git.
+
+    It is asked for once: what is changed later is no code of this process.
+    """
     here = Path(__file__).resolve().parent
     try:
         commit = _git(here, "rev-parse", "HEAD")

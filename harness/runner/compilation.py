@@ -9,12 +9,11 @@ import hashlib
 import platform
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from importlib.metadata import version
 
 from harness import kept_files
 from harness.backends.registry import ours
 from harness.experiment.experiment import Point
-from harness.installed import sources_hash
+from harness.installed import sources_hash, version_of
 from harness.runner.point import is_stepped
 from harness.runner.warm_up import warm_ups
 from harness.vocabulary import Shape
@@ -67,5 +66,6 @@ def _task(compile_it: Callable[[], None]) -> Callable[[], bool]:
 
 def _mark(name: str) -> str:
     """The name of the empty file that says that kernels were compiled: from these sources, by this numba, here."""
-    parts = (name, sources_hash(), version("numba"), platform.python_version(), platform.machine(), platform.node())
+    compiler, python = str(version_of("numba")), platform.python_version()
+    parts = (name, sources_hash(), compiler, python, platform.machine(), platform.node())
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

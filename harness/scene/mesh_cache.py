@@ -11,13 +11,13 @@ import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.installed import version_of
 from harness.kept_files import keep_arrays, kept_arrays
 from harness.kernel_cache import all_sources
 from harness.scene.hull import Hull
@@ -104,6 +104,6 @@ def _reader() -> str:
     for file in sorted(all_sources("harness.scene.mesh_file")):
         sources.update(file.read_bytes())
     for library in _LIBRARIES:
-        with suppress(PackageNotFoundError):
-            sources.update(f"{library} {version(library)}\n".encode())
+        if version := version_of(library):
+            sources.update(f"{library} {version}\n".encode())
     return sources.hexdigest()

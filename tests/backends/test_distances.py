@@ -14,7 +14,7 @@ from harness.compare.exact import Placed
 from harness.compare.exact_distance import hull_distance, surface_distance
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.conftest import cube_mesh, make_bodies, random_scene, slow_beyond
 
 # Of a size: by how much gaps of hulls and meshes may be off; those of pybullet and mujoco against their own hulls.
 ERRORS = {
@@ -87,7 +87,7 @@ def truth_of(shape, size):
     return true_gaps(some_scene(shape, size))
 
 
-@pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
+@pytest.mark.parametrize("shape", slow_beyond(["sphere", "hull", "mesh"], 2))
 @pytest.mark.parametrize("size", [pytest.param(1e-3, marks=pytest.mark.slow), 1.0])
 def test_gaps_are_those_of_exact_arithmetic(backend, shape, size):
     if shape not in backend.shapes or (backend.name, shape) in GAPLESS:

@@ -15,7 +15,7 @@ from harness.backends.protocol import queries
 from harness.cpu_time import cpu_time
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.conftest import cube_mesh, make_bodies, random_scene, slow_beyond
 
 DURATION = 0.25
 # s by which times may be off, and how many hits of a hundred may be missed: FCL does not turn meshes, and now and then
@@ -25,6 +25,7 @@ ERRORS = {
     ("rapier3d", "sphere"): (1e-4, 0), ("rapier3d", "hull"): (1e-3, 0), ("rapier3d", "mesh"): (1e-3, 0),
     ("ipctk", "mesh"): (1e-4, 0),
 }  # fmt: skip
+QUICK = [("fcl", "sphere"), ("fcl", "hull"), ("rapier3d", "sphere"), ("ipctk", "mesh")]
 
 
 @pytest.fixture(params=ERRORS, ids="-".join)
@@ -61,6 +62,9 @@ def true_impacts(scene, duration):
     return times
 
 
+@pytest.mark.parametrize(
+    "asked", slow_beyond(sorted(ERRORS, key=lambda one: one not in QUICK), 4), indirect=True, ids="-".join
+)
 def test_hits_and_their_times_are_those_of_the_kernels(asked):
     backend, shape, error, missed = asked
     scene = random_scene(shape, 28, 3.9, seed=4)
@@ -132,7 +136,7 @@ def spin_for_ever():
         pass
 
 
-@pytest.mark.parametrize("goes_wrong", [spin_for_ever, os.abort, lambda: time.sleep(60)])
+@pytest.mark.parametrize("goes_wrong", slow_beyond([os.abort, spin_for_ever, lambda: time.sleep(60)], 2))
 def test_a_cast_that_does_not_end_costs_its_own_answer_only(casts, goes_wrong):
     asked = casts(goes_wrong)
     positions = np.array([[0.0, 0, 0], [3, 0.25, 0], [6, 0, 0]])

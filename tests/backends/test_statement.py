@@ -11,6 +11,7 @@ from harness.backends import registry
 from harness.backends.registry import BackendError
 from harness.backends.statement import Statement, _asked, approximation, missing, statement
 from harness.cli.main import main
+from tests.conftest import slow_beyond
 from tests.runner.hostile_plugins import MARK, install, left_behind
 
 WAYS = {
@@ -40,7 +41,7 @@ def installed(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "way", [pytest.param(way, marks=() if number % 3 == 0 else pytest.mark.slow) for number, way in enumerate(WAYS)]
+    "way", slow_beyond(sorted(WAYS, key=lambda way: way not in ("exits", "is no Python", "points to nothing")), 3)
 )
 def test_why_a_strangers_backend_cannot_be_used_is_told_in_one_line(installed, way):
     installed(way)

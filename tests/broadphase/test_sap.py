@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from harness.broadphase.brute_force import BruteForce
 from harness.broadphase.sap import LANES, SweepAndPrune
 from harness.scene.box import Box
+from tests.conftest import examples
 
 PLACES = ("inside", "near", "wall", "corner", "outside", "coincident", "touching", "lattice", "plane")
 MOTIONS = ("rest", "drift", "leap", "anew", "mirror", "flatten", "collapse", "shift", "leave")
@@ -99,7 +100,7 @@ def moved(kind, positions, half, rng):
     return positions
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(
     st.integers(0, 2**32 - 1),
     st.integers(1, 300),

@@ -13,6 +13,7 @@ from harness.cli.main import main
 from harness.store import connection as store
 from harness.store import tables
 from harness.store.database import Database
+from tests.conftest import slow_beyond
 
 EXPERIMENT = """
 title: Trouble
@@ -71,8 +72,11 @@ def test_a_full_disk_keeps_every_finished_run_and_the_next_sweep_does_the_rest(t
 
 @pytest.mark.parametrize(
     "name",
-    ["a b.db", "it's \"q\".db", "h#sh.db", "wh?t.db", "per%41cent%.db", "new\nline.db", "tab\t.db", "-dash.db",
-     "back\\.db", "$HOME;&.db", "ünï ⇒.db", "file:x.db", "sub folder#/x?.db", " .db"],
+    slow_beyond(
+        ["it's \"q\".db", "-dash.db", "sub folder#/x?.db", "per%41cent%.db", "a b.db", "h#sh.db", "wh?t.db",
+         "new\nline.db", "tab\t.db", "back\\.db", "$HOME;&.db", "ünï ⇒.db", "file:x.db", " .db"],
+        4,
+    ),
 )  # fmt: skip
 def test_a_results_file_may_be_called_anything(trouble, capsys, name):
     """The file that is named is made, and read again, by the words that the sweep itself gives to go on."""

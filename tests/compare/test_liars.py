@@ -14,6 +14,7 @@ from tests.conftest import cube_mesh, random_scene
 SLOW = (
     *("drops-at-random", "random-verdicts", "drops-neighbours", "last-frame", "halves-hulls", "inflates-by-1e-3"),
     *("spheres-for-all", "sees-all", "doubles", "unsorted", "turned-round", "out-of-range"),
+    *("floats", "tolerates-nan", "raises"),
 )
 
 

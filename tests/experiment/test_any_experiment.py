@@ -11,6 +11,7 @@ from harness.experiment.json_schema import json_schema
 from harness.experiment.leaves import LEAVES
 from harness.experiment.load import KEYS, load_text
 from harness.experiment.schema import MeasureSpec
+from tests.conftest import examples
 
 CHECKER = jsonschema.Draft202012Validator(json_schema())
 
@@ -69,7 +70,7 @@ def test_a_right_experiment_loads_and_its_points_load_again(file: dict[str, obje
         assert load_text(yaml.safe_dump(again), "exp.yaml").points == (point,)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(files())
 def test_a_right_experiment_is_taken_by_editors(file: dict[str, object]) -> None:
     assert list(CHECKER.iter_errors(file)) == []

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from harness import kept_files
 from harness.cli.main import main
 from harness.experiment import kept_facts
+from harness.scene.mesh_cache import KIND
 from harness.vocabulary import OWN_BACKEND
 
 CUBE = Path(__file__).parents[2] / "meshes" / "cube.ply"
@@ -30,10 +32,18 @@ def put(path, content):
     os.utime(path, (1e9, 1e9))
 
 
+@pytest.fixture(scope="module")
+def kept_meshes(tmp_path_factory):
+    """Where meshes are kept for all tests: a process that reads one takes longer than a test."""
+    return tmp_path_factory.mktemp("meshes")
+
+
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """A folder of experiments, where nothing is kept yet."""
+def folder(tmp_path, monkeypatch, kept_meshes):
+    """A folder of experiments, of which nothing is kept yet."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    folder_of = kept_files.folder
+    monkeypatch.setattr(kept_files, "folder", lambda kind: kept_meshes if kind == KIND else folder_of(kind))
     monkeypatch.chdir(tmp_path)
     put(tmp_path / "experiments" / "a.yaml", TEXT.encode())
     put(tmp_path / "meshes" / "mine.ply", CUBE.read_bytes())
@@ -66,7 +76,7 @@ def unread(monkeypatch):
     return forbid
 
 
-def kept_files(folder):
+def facts_in(folder):
     return list((folder / "cache" / "harness" / "facts").glob("*.json"))
 
 
@@ -161,7 +171,7 @@ def test_of_what_is_wrong_nothing_is_kept(folder, said):
     assert wrong[0] == 2
     assert said("validate", "experiments") == wrong
     assert said("plan", "experiments/a.yaml")[0] == 2
-    assert kept_files(folder) == []
+    assert facts_in(folder) == []
 
 
 @pytest.mark.slow
@@ -179,13 +189,13 @@ def test_files_of_one_name_are_wrong_however_often_they_are_looked_at(folder, sa
 def test_a_mesh_that_changed_as_the_command_ran_is_no_ground_to_keep_anything(folder, said):
     os.utime(folder / "meshes" / "mine.ply")
     assert said("validate", "experiments")[0] == 0
-    assert kept_files(folder) == []
+    assert facts_in(folder) == []
 
 
 def test_a_kept_file_that_is_garbage_is_none(folder, said):
     first = said("validate", "experiments")
     for garbage in (b"", b"{", b"[]", b"{}", b'{"files": [[]], "facts": 1}', b'{"files": [["mesh"]], "facts": {}}'):
-        (file,) = kept_files(folder)
+        (file,) = facts_in(folder)
         file.write_bytes(garbage)
         assert said("validate", "experiments") == first
 
@@ -194,4 +204,4 @@ def test_a_backend_from_elsewhere_is_asked_each_time(folder, said, monkeypatch):
     monkeypatch.setattr("harness.backends.registry.ours", lambda name: name != OWN_BACKEND)
     assert said("validate", "experiments")[0] == 0
     assert said("plan", "experiments/a.yaml")[0] == 0
-    assert kept_files(folder) == []
+    assert facts_in(folder) == []

@@ -62,6 +62,7 @@ def test_the_largest_rate_that_a_result_allows(times, trials):
     assert Rate("claim", "false", "5 %", times, trials).most == pytest.approx(theirs)
 
 
+@pytest.mark.slow
 def test_a_report_imports_nothing_that_it_can_do_without():
     heavy = ("scipy.stats", "matplotlib", "trimesh")
     check = f"import sys, harness.report.site; print([name for name in {heavy} if name in sys.modules])"

@@ -6,6 +6,7 @@ import pytest
 from harness.measure.noise import Control, distinguishable, level, noise_floor, sign_test
 from harness.measure.resolution import Resolution
 from harness.measure.statistics import paired_ratio, summary
+from tests.conftest import slow_beyond
 
 NOISES = {
     "normal": lambda rng, shape: rng.normal(10.0, 1.0, shape),
@@ -39,7 +40,7 @@ def winner(times, floor):
     return all(distinguishable(paired_ratio(other, best), floor) for other in others)
 
 
-@pytest.mark.parametrize("arms", [2, 3, 6])
+@pytest.mark.parametrize("arms", slow_beyond([2, 3, 6]))
 def test_equal_methods_have_no_winner_in_95_of_100_trials(arms):
     trials = clocks(np.random.default_rng(arms), 1000, arms + 1)
     # the control is the first arm's second run in each block

@@ -15,7 +15,7 @@ from harness.motion.reach import SLACK, fastest, no_pair_can_meet
 from harness.scene.box import Box
 from harness.scene.mesh_file import make_mesh
 from harness.scene.scene import Scene
-from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.conftest import cube_mesh, examples, make_bodies, random_scene
 from tests.methods.flights import detector, frames_of, method_for, planned
 from tests.narrowphase.meshes import mesh_named
 
@@ -63,7 +63,7 @@ def scenes(draw):
     return Scene(shape, (mesh,), bodies, scene.box)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(scenes(), st.sampled_from(["grid", "tree"]), st.sampled_from(RESPONSES))
 def test_every_stage_that_may_be_forced_the_other_way_leaves_every_hit_as_it_is(scene, algorithm, response):
     plan, outcome = fly(scene, algorithm, response)
@@ -75,7 +75,7 @@ def test_every_stage_that_may_be_forced_the_other_way_leaves_every_hit_as_it_is(
         assert story(forced) == story(outcome), stage
 
 
-@settings(max_examples=10)
+@settings(max_examples=examples(10))
 @given(scenes(), st.sampled_from(RESPONSES))
 def test_what_is_left_out_changes_no_hit_of_brute_force_which_leaves_nothing_out(scene, response):
     (_, brute), (_, grid) = fly(scene, "brute-force", response), fly(scene, "grid", response)
@@ -85,7 +85,7 @@ def test_what_is_left_out_changes_no_hit_of_brute_force_which_leaves_nothing_out
     assert brute.metrics["box_tests"] == (0 if response == "none" else 40 * 6 * count)
 
 
-@settings(max_examples=8)
+@settings(max_examples=examples(8))
 @given(scenes(), st.sampled_from(["grid", "tree"]), st.sampled_from(RESPONSES))
 def test_bodies_at_rest_are_looked_at_once_and_counted_as_if_in_every_frame(scene, algorithm, response):
     scene.bodies.velocities[:] = scene.bodies.spins[:] = 0.0

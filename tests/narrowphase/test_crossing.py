@@ -14,7 +14,7 @@ from harness.narrowphase.mesh_pairs import MeshPairs
 from harness.narrowphase.placement import Places
 from harness.narrowphase.triangle_tree import triangle_tree
 from harness.narrowphase.verdicts import PairVerdict, which
-from tests.conftest import cube_mesh
+from tests.conftest import cube_mesh, slow_beyond
 from tests.narrowphase.meshes import MESHES, crowd, mesh_named
 
 
@@ -85,7 +85,7 @@ def test_a_point_on_a_face_is_told_by_the_side_it_comes_from(gap):
     assert meeting(face, needle, 1e-13) == (PairVerdict.SEPARATE if gap > 0 else PairVerdict.TOUCHING)
 
 
-@pytest.mark.parametrize("name", MESHES)
+@pytest.mark.parametrize("name", slow_beyond(MESHES, 2))
 def test_all_that_is_below_a_node_is_in_its_disc(name):
     mesh = mesh_named(name)
     tree = triangle_tree(mesh.vertices, mesh.faces)
@@ -110,7 +110,7 @@ def test_all_that_is_below_a_node_is_in_its_disc(name):
             assert np.abs(corners @ [x, y, z]).max() <= thickness
 
 
-@pytest.mark.parametrize("name", [*MESHES, "icosphere-1280.ply"])
+@pytest.mark.parametrize("name", slow_beyond([*MESHES, "icosphere-1280.ply"], 2))
 def test_surfaces_are_judged_as_fcl_judges_them_and_nearly_always_judged(name):
     scene = crowd(mesh_named(name), "mesh", 30, 2.0, 1)
     brute = Fcl()

@@ -11,7 +11,7 @@ from harness.narrowphase.clearance_field import NODES, clearance_field, distance
 from harness.narrowphase.free_flight import relative_motion, seen_at
 from harness.narrowphase.immersion_duration import clearance, immersion_lasts
 from harness.narrowphase.triangle_tree import triangle_tree
-from tests.conftest import cube_mesh
+from tests.conftest import cube_mesh, slow_beyond
 from tests.narrowphase.flights import Truth, body, encounter, shape_named
 from tests.narrowphase.meshes import MESHES, mesh_named
 
@@ -40,7 +40,7 @@ def test_clearance_in_a_cube_is_no_more_than_the_distance_from_its_faces_and_har
 
 
 # the teddy is in several pieces, and has no field
-@pytest.mark.parametrize("name", MESHES[:3])
+@pytest.mark.parametrize("name", slow_beyond(MESHES[:3]))
 def test_clearance_is_no_more_than_the_distance_from_the_nearest_triangle(name):
     mesh = mesh_named(name)
     field, tree = shape_named(name).field, triangle_tree(mesh.vertices, mesh.faces)

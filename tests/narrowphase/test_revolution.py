@@ -13,7 +13,7 @@ from harness.narrowphase.support import support_map
 from harness.narrowphase.verdicts import SearchVerdict
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.conftest import cube_mesh, make_bodies
+from tests.conftest import cube_mesh, examples, make_bodies
 from tests.methods import flights
 from tests.narrowphase.meshes import MESHES, mesh_named, turns
 from tests.narrowphase.test_advancement import CUBE, WIDTH, body, gap_at
@@ -88,7 +88,7 @@ def test_cubes_that_spin_fast_and_approach_slowly_meet_when_edges_pass_each_othe
     assert min(gap_at(a, b, CUBE, time) for time in earlier[:: max(1, int(rate // 10))]) > 0.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.integers(0, 10_000), st.sampled_from(sorted(MESHES)))
 def test_nothing_touches_before_what_is_swept_does(seed, name):
     rng = np.random.default_rng(seed)

@@ -13,6 +13,7 @@ from harness.report.drawing import palette
 from harness.report.drawing.axes import even_numbers
 from harness.report.drawing.canvas import Canvas
 from harness.report.drawing.markers import outline
+from tests.conftest import examples
 
 
 def drawn(canvas, name="x"):
@@ -82,7 +83,7 @@ def test_markers_are_as_large_as_matplotlib_draws_them(marker):
     assert found == pytest.approx([100 * edge for edge in (box.x0, box.x1, box.y0, box.y1)], abs=0.01)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(st.floats(-1e6, 1e6), st.floats(1e-3, 1e6), st.integers(3, 7), st.sampled_from([(1, 2, 2.5, 5), (1, 2, 5)]))
 def test_even_numbers_are_those_of_matplotlib(low, span, most, steps):
     high = low + span

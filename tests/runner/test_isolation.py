@@ -137,6 +137,7 @@ def test_importing_a_backend_is_no_part_of_its_runs(spheres, plugin):
     assert (report.status, report.reason) == ("ok", None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("timeout", [1e7, 1e20, 1e30])
 def test_a_limit_longer_than_the_system_can_wait_is_none(spheres, servers, timeout):
     assert run_one(spheres(timeout=timeout), servers).status == "ok"

@@ -8,6 +8,7 @@ from hypothesis.extra import numpy as hnp
 from harness.errors import InputError
 from harness.scene.hull import convex_hull
 from harness.scene.topology import topology, volume
+from tests.conftest import examples
 
 
 def assert_fit_for_fcl(points, hull):
@@ -25,7 +26,7 @@ def assert_fit_for_fcl(points, hull):
 
 
 @given(hnp.arrays(np.float64, st.tuples(st.integers(4, 40), st.just(3)), elements=st.integers(-4, 4)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 def test_a_hull_is_closed_and_outward_also_of_points_on_planes_and_lines(points):
     try:
         hull = convex_hull(points)

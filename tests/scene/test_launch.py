@@ -10,6 +10,7 @@ from harness.scene.box import Box
 from harness.scene.lattice import sites
 from harness.scene.launch import PlacementError, directions, orientations, place
 from harness.scene.relaxation import overlapping
+from tests.conftest import examples, slow_beyond
 
 
 def box_for(radii, packing, shape=(1.0, 1.0, 1.0)):
@@ -27,7 +28,7 @@ radii_of_any_sizes = st.lists(st.floats(0.05, 1.0), min_size=0, max_size=60).map
 
 
 @given(radii_of_any_sizes, st.floats(0.001, 0.45), st.tuples(*[st.floats(0.3, 3)] * 3), st.integers(0, 99))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 def test_bodies_are_inside_and_apart_or_the_reason_is_said(radii, packing, shape, seed):
     box = box_for(radii, packing, shape) if len(radii) else Box(np.ones(3))
     try:
@@ -40,7 +41,7 @@ def test_bodies_are_inside_and_apart_or_the_reason_is_said(radii, packing, shape
         assert_placed(positions, radii, box)
 
 
-@pytest.mark.parametrize("packing", [0.01, 0.2, pytest.param(0.3, marks=pytest.mark.slow), 0.36, 0.49, 0.6])
+@pytest.mark.parametrize("packing", slow_beyond([0.2, 0.49, 0.01, 0.3, 0.36, 0.6], 2))
 def test_a_thousand_equal_bodies_are_placed_at_any_packing(packing):
     radii = np.full(1000, 0.5)
     box = box_for(radii, packing)
@@ -77,7 +78,7 @@ def test_the_same_state_of_the_generator_gives_the_same_places():
         assert not np.array_equal(one, place(radii, box, np.random.default_rng(8), overlap=False))
 
 
-@pytest.mark.parametrize("ratio", [1.0, 3.0, 10.0])
+@pytest.mark.parametrize("ratio", slow_beyond([3.0, 1.0, 10.0]))
 @pytest.mark.parametrize("packing", [0.05, 0.29])
 def test_without_a_kernel_a_few_bodies_are_put_to_the_same_places(packing, ratio, monkeypatch):
     for count in (1, 2, 40, 150):

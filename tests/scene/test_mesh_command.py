@@ -35,7 +35,9 @@ def test_made_pumpkins_go_to_meshes_and_are_not_overwritten_unasked(capsys):
         ("make cube --faces 14", "12 faces"),
         ("make cube --out cube.stl", "written as .ply"),
         ("inspect none.obj", "none.obj: there is no such mesh file"),
-        ("simplify none.obj --faces 10 --out a.ply", "none.obj: there is no such mesh file"),
+        pytest.param(
+            "simplify none.obj --faces 10 --out a.ply", "none.obj: there is no such mesh file", marks=pytest.mark.slow
+        ),
     ],
 )
 def test_wrong_input_is_one_sentence_and_exit_2(words, reason, capsys):

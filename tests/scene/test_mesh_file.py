@@ -23,10 +23,10 @@ def refused(path):
     ("name", "faces", "vertices"),
     [
         ("duck.obj", 4212, 2108),
-        ("soccerball.obj", 9048, 4526),
+        pytest.param("soccerball.obj", 9048, 4526, marks=pytest.mark.slow),
         ("bunny.obj", 902, 453),
         ("sphere_smooth.obj", 1792, 898),
-        ("differential/diff_spider.stl", 11840, 5920),
+        pytest.param("differential/diff_spider.stl", 11840, 5920, marks=pytest.mark.slow),
     ],
 )
 def test_real_meshes_keep_their_faces_and_close_once_equal_vertices_are_one(name, faces, vertices):

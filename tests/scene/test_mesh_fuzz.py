@@ -4,9 +4,8 @@ from harness.scene.formats import FORMATS
 from tests.scene.fuzz_meshes import fuzz
 
 
-@pytest.mark.parametrize(
-    "form", [pytest.param(form, marks=() if form == "stl" else pytest.mark.slow) for form in FORMATS]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("form", FORMATS)
 def test_changed_files_are_read_or_refused_in_plain_words(form):
     """A short form of the script `fuzz_meshes.py`."""
     tally = fuzz(form, 60)

@@ -53,8 +53,8 @@ def test_it_is_concave_with_ten_ribs_and_dimples_below_and_above():
     ("name", "solid", "faces"),
     [
         ("pumpkin-1753.ply", "pumpkin", 1753),
-        ("pumpkin-9868.ply", "pumpkin", 9868),
-        ("pumpkin-17001.ply", "pumpkin", 17001),
+        pytest.param("pumpkin-9868.ply", "pumpkin", 9868, marks=pytest.mark.slow),
+        pytest.param("pumpkin-17001.ply", "pumpkin", 17001, marks=pytest.mark.slow),
         ("icosphere-1280.ply", "icosphere", 1280),
         ("cube.ply", "cube", None),
     ],
