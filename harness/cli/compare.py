@@ -18,7 +18,7 @@ from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 
 if TYPE_CHECKING:
-    from harness.compare.atlas import Cell
+    from harness.cli.surveying import Surveyed
     from harness.compare.document import Known, Reduced
     from harness.compare.outcome import Case, Comparison, Failure
     from harness.compare.tally import Counts
@@ -44,7 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_override_argument(parser)
     parser.add_argument(
-        "--save", metavar="DIR", help="write real disagreements as the smallest experiments that show them"
+        "--save",
+        metavar="DIR",
+        help="write real disagreements as the smallest experiments that show them, and of an atlas its table and the "
+        "proof of every accusation",
     )
     parser.add_argument("--db", metavar="FILE", help=f"the database that keeps the verdicts (default: {DATABASE})")
     parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
@@ -87,13 +90,13 @@ def run(arguments: argparse.Namespace) -> int:
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
         budget.left_out.append(f"of the poses of each scene one in {budget.every} was asked about")
-    cells: list[Cell] = []
+    atlases: list[Surveyed] = []
     for experiment in experiments:
         if experiment.measure.families:
             found_of = surveyed(experiment, meshes, engines(chosen), budget, progress, usable_cores())
             whole.add(found_of.found)
             rows += [(row, True) for row in found_of.rows]
-            cells += found_of.atlas.cells
+            atlases.append(found_of)
             keep += [
                 (experiment.name, pair, survey_key(experiment, meshes, pair[0]), document_of)
                 for pair, document_of in found_of.documents()
@@ -115,6 +118,9 @@ def run(arguments: argparse.Namespace) -> int:
     # as `document` has them: what one backend loses first, then what both share
     ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
     files = _saved(ordered, meshes, arguments.save) if arguments.save else {}
+    if arguments.save:
+        _save_atlases(atlases, ordered, files, arguments.save)
+    cells = [cell for atlas in atlases for cell in atlas.atlas.cells]
     if arguments.json:
         atlas = {"atlas": [cell_row(cell) for cell in cells]} if cells else {}
         json.dump(document(whole, ordered, files) | atlas, sys.stdout, allow_nan=False)
@@ -197,6 +203,19 @@ def _saved(rows: list[Reduced], meshes: Opened, folder: str) -> dict[int, str]:
             path = save(row.small, Path(folder), f"{row.name}-{place}", paths, script_of(row.small))
             files[place] = str(path)
     return files
+
+
+def _save_atlases(atlases: list[Surveyed], rows: list[Reduced], files: dict[int, str], folder: str) -> None:
+    """Of several atlases each in a folder of its own, named as their experiments are."""
+    from pathlib import Path
+
+    from harness.cli.atlas_files import save_atlas
+
+    file_of = {id(rows[place]): Path(file) for place, file in files.items()}
+    for found in atlases:
+        into = Path(folder) / found.experiment.name if len(atlases) > 1 else Path(folder)
+        shown = {case: file_of[id(row)] for case, row in enumerate(found.rows) if id(row) in file_of}
+        save_atlas(found, shown, into)
 
 
 def _print(found: Comparison) -> None:

@@ -8,13 +8,10 @@ Without numbers, the newest sweep and the newest before it that measured the sam
 from __future__ import annotations
 
 import argparse
-import json
-import math
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from harness.cli.streams import speaks_unicode
+from harness.cli.json_document import json_text
 from harness.cli.width import say
 
 if TYPE_CHECKING:
@@ -49,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     found = difference(arguments.db, arguments.before, arguments.after)
     if arguments.json:
-        print(json.dumps(_document(found), ensure_ascii=not speaks_unicode(sys.stdout), allow_nan=False))
+        print(json_text(_document(found)))
     elif arguments.format == "markdown":
         print(_markdown(found))
     else:
@@ -170,15 +167,15 @@ def _document(found: Difference) -> dict[str, Any]:
                 "parameters": point.parameters,
                 "pace": point.pace,
                 "changed": point.changed,
-                "run_seconds": [_finite(point.before), _finite(point.after)],
+                "run_seconds": [point.before, point.after],
                 "ratio": {
-                    "median": _finite(point.ratio.median),
-                    "low": _finite(point.ratio.low),
-                    "high": _finite(point.ratio.high),
+                    "median": point.ratio.median,
+                    "low": point.ratio.low,
+                    "high": point.ratio.high,
                     "coverage": point.ratio.coverage,
                     "pairs": point.ratio.n,
                 },
-                "counters": {name: list(map(_finite, values)) for name, values in point.counters.items()},
+                "counters": {name: list(values) for name, values in point.counters.items()},
                 "statuses": point.statuses,
             }
             for point in found.points
@@ -188,7 +185,3 @@ def _document(found: Difference) -> dict[str, Any]:
             for row in found.verdicts
         ],
     }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

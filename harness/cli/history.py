@@ -7,12 +7,9 @@ fewer than one history in twenty names any.
 from __future__ import annotations
 
 import argparse
-import json
-import math
-import sys
 from typing import TYPE_CHECKING, Any
 
-from harness.cli.streams import speaks_unicode
+from harness.cli.json_document import json_text
 from harness.cli.width import say
 
 if TYPE_CHECKING:
@@ -36,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     found = history(arguments.db, arguments.metric, arguments.experiments)
     if arguments.json:
         document = {"metric": arguments.metric, "machines": [_document(machine) for machine in found]}
-        print(json.dumps(document, ensure_ascii=not speaks_unicode(sys.stdout), allow_nan=False))
+        print(json_text(document))
         return 0
     for machine in found:
         _say(machine, arguments.metric, everything=arguments.all)
@@ -108,7 +105,7 @@ def _document(machine: MachineHistory) -> dict[str, Any]:
                         "sweep": step.sweep.id,
                         "before": step.before.id,
                         "commits": [step.before.commit, step.sweep.commit],
-                        "ratio": _finite(step.ratio),
+                        "ratio": step.ratio,
                         "p_value": step.p_value,
                     }
                     for step in point.steps
@@ -121,9 +118,5 @@ def _document(machine: MachineHistory) -> dict[str, Any]:
 
 def _summary(found: Summary) -> dict[str, Any]:
     return {
-        "median": _finite(found.median), "low": _finite(found.low), "high": _finite(found.high), "repeats": found.n,
+        "median": found.median, "low": found.low, "high": found.high, "repeats": found.n,
     }  # fmt: skip
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -73,8 +73,8 @@ class Reliable(io.TextIOWrapper):
 
 
 def speaks_unicode(stream: TextIO) -> bool:
-    """Whether every letter can be written as it is."""
-    return stream.encoding.lower().replace("-", "").replace("_", "") == "utf8"
+    """Whether every letter can be written as it is; a stream that keeps text has no encoding."""
+    return (stream.encoding or "utf8").lower().replace("-", "").replace("_", "") == "utf8"
 
 
 def _fill_closed() -> None:

@@ -222,10 +222,10 @@ def _locate_poses(expansion: Expansion, folder: Path, problems: FileProblems) ->
     for (leaf, text), origin in expansion.origins.items():
         if leaf != "poses" or (name := json.loads(text)) is None:
             continue
-        path = (folder / name).resolve()
+        path = Path(os.path.realpath(folder / name))  # unlike Path.resolve, without an error for links in a circle
         if not path.is_relative_to(folder.resolve()):
             problems.add(origin, f"the poses {shown(name)} lie outside of the experiment's folder")
-        elif not path.is_file():
+        elif not os.path.isfile(path):  # False, too, of a name that is too long
             problems.add(origin, f"there are no poses {shown(name)} beside the experiment")
         else:
             located[name] = path

@@ -63,7 +63,7 @@ class Metric:
     clock : whether it is read from a clock: its repeats are averaged, its controls kept
     exact : whether it is the same on every machine to the last digit, so that another value is another answer
     tabulated : whether the tables of a page have a column of it; else it stands in the CSV file alone
-    on_demand : made only where an experiment names it, for it takes a simulation of its own
+    on_demand : made only where an experiment names it, for it takes a simulation or a measurement of its own
     measure : makes it from the scene and the outcome of a run, once, outside of every clock; None where it has no
         meaning. Without, the motion itself reports it
 

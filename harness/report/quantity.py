@@ -15,6 +15,7 @@ MISSING = "–"
 _PREFIXES = {
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
     "B": ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1.0, "B")),
+    "B/s": ((1e9, "GB/s"), (1e6, "MB/s"), (1e3, "kB/s"), (1.0, "B/s")),
 }
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -48,7 +49,7 @@ def scale(values: Iterable[float], unit: str) -> Scale:
     Parameters
     ----------
     values : numbers in the unit; not finite ones and zeros do not count
-    unit : "s" and "B" take prefixes, "1" means a plain number
+    unit : "s", "B" and "B/s" take prefixes, "1" means a plain number
     """
     if unit not in _PREFIXES:
         return Scale(1.0, "" if unit == "1" else unit)

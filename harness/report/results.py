@@ -11,6 +11,7 @@ from typing import Any
 
 import pandas as pd
 
+from harness.errors import InputError
 from harness.report.accuracy.experiment import ExperimentAccuracy, accuracy_of
 from harness.report.atlas import AtlasResults
 from harness.report.backends.comparisons import Comparisons
@@ -35,6 +36,8 @@ class Results:
     def runs(self) -> pd.DataFrame:
         """The run table of all experiments."""
         table = runs(self.database)
+        if lacking := [leaf for leaf in ("backend", "algorithm", "shape") if leaf not in table and len(table)]:
+            raise InputError(f"{self.database}: is damaged: its points do not say their {lacking[0]}")
         texts = list(table.select_dtypes("string"))
         # as plain objects: rows of those are taken at a fraction of the cost
         plain: pd.DataFrame = table.astype(dict.fromkeys(texts, object)).copy()

@@ -12,6 +12,7 @@ from math import isfinite
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.measure.metrics import from_outcome
+from harness.measure.roofline import roofline
 from harness.methods.method import Method
 from harness.methods.stages import Plan
 from harness.motion.finite import NotFiniteError
@@ -88,6 +89,7 @@ def execute(
     if recorded:
         return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome))
     metrics |= invariance(on_demand, scene, partial(_hits_as_planned, method, plan, law))
+    metrics |= roofline(on_demand, len(scene.bodies), plan.keeps("orientations"), metrics)
     if point.reference is not None and not traced:
         if outcome.answers is not None:
             metrics |= accuracy.near_errors(point, files, outcome.answers)

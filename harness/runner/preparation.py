@@ -115,7 +115,7 @@ def _file_problems(experiment: Experiment, opened: Opened, broken: Mapping[Path,
                 "poses", name, f"{path.name} has poses of {recorded.bodies} bodies, not {count}"
             )
     if experiment.poses_paths and (asked := sorted(experiment.metrics & ON_DEMAND)):
-        message = f"recorded poses cannot be flown again in another form, so that nothing is known of {asked[0]}"
+        message = f"{asked[0]} is not known of recorded poses"
         yield experiment.leaf_problem("poses", next(iter(experiment.poses_paths)), message)
 
 

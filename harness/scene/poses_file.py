@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import tokenize
 import zipfile
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +17,12 @@ from harness.scene.recorded_poses import RecordedPoses, digest_of
 
 # B that a file may have, and that its arrays may need when they are unpacked.
 LARGEST = 256 * 2**20
+# m and s, as for the numbers of an experiment: squares and cubes of what lies beyond would overflow or underflow.
+_FARTHEST, _SHORTEST = 1e30, 1e-30
 # By how much the length of a quaternion may be off 1: single precision leaves 1e-7.
 _OFF = 1e-6
+# What comes of a header that is no Python text of a dictionary as NumPy writes it.
+_UNREADABLE = (ValueError, KeyError, TypeError, SyntaxError, tokenize.TokenError, OverflowError, RecursionError)
 
 _SHAPES = {"time": "(f,)", "positions": "(f, n, 3)", "quaternions": "(f, n, 4)"}
 
@@ -39,11 +46,14 @@ def read_poses(path: Path) -> RecordedPoses:
         if not np.isfinite(array).all():
             frame = int(np.argmin(np.isfinite(array.reshape(len(array), -1)).all(axis=1)))
             raise InputError(f"{path.name}: {name}[{frame}] has a value that is not finite")
-    later = np.diff(time) > 0.0
+        if name != "quaternions" and np.abs(array).max() > _FARTHEST:
+            raise InputError(f"{path.name}: {name} must be within {_FARTHEST:g}, not {np.abs(array).max():g}")
+    later = np.diff(time) >= _SHORTEST
     if not later.all():
         frame = int(np.argmin(later))
         raise InputError(
-            f"{path.name}: times must grow; time[{frame + 1}] is {time[frame + 1]:g} after {time[frame]:g}"
+            f"{path.name}: times must grow; time[{frame + 1}] is {time[frame + 1]:g} after {time[frame]:g}, "
+            f"and must be {_SHORTEST:g} s later at least"
         )
     lengths = np.linalg.norm(quaternions, axis=2)
     if (np.abs(lengths - 1.0) > _OFF).any():
@@ -65,23 +75,53 @@ def _arrays(path: Path) -> dict[str, NDArray[np.generic]]:
         raise InputError(f"{path.name}: this is no .npz file, or it is cut short; numpy.savez writes one")
     try:
         with zipfile.ZipFile(path) as archive:
-            found = {info.filename.removesuffix(".npy"): info.file_size for info in archive.infolist()}
-        lacking = [name for name in _SHAPES if name not in found]
-        if lacking:
-            has = ", ".join(found) or "nothing"
-            raise InputError(f"{path.name}: there is no array {lacking[0]} {_SHAPES[lacking[0]]} in it; it has {has}")
-        unpacked = sum(found[name] for name in _SHAPES)
-        if unpacked > LARGEST:
-            much = f"{unpacked / 2**20:.0f} MiB"
-            raise InputError(f"{path.name}: {much} unpacked are too large; poses may have {LARGEST // 2**20} MiB")
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: np.asarray(archive[name]) for name in _SHAPES}
-    except ValueError as error:
-        if "pickle" in str(error).lower():
-            raise InputError(f"{path.name}: it holds pickled Python objects, which are not read") from error
-        raise InputError(f"{path.name}: it is damaged: {error}") from error
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, KeyError, NotImplementedError) as error:
+            found = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
+            lacking = [name for name in _SHAPES if name not in found]
+            if lacking:
+                has = ", ".join(found) or "nothing"
+                raise InputError(
+                    f"{path.name}: there is no array {lacking[0]} {_SHAPES[lacking[0]]} in it; it has {has}"
+                )
+            unpacked = sum(found[name].file_size for name in _SHAPES)
+            if unpacked > LARGEST:
+                much = f"{unpacked / 2**20:.0f} MiB"
+                raise InputError(f"{path.name}: {much} unpacked are too large; poses may have {LARGEST // 2**20} MiB")
+            return {name: _array(path, name, archive, found[name]) for name in _SHAPES}
+    except RuntimeError as error:  # what zipfile says of a member with a password
+        raise InputError(f"{path.name}: it is encrypted; write it without a password") from error
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError) as error:
         raise InputError(f"{path.name}: it is damaged or cut short: {error}") from error
+
+
+def _array(path: Path, name: str, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> NDArray[np.generic]:
+    """One array. Nothing is made of its size before its file is known to hold as much."""
+    try:
+        file = archive.open(member)
+    except NotImplementedError:
+        raise InputError(
+            f"{path.name}: {name} is compressed in a way that is not read; numpy.savez writes one"
+        ) from None
+    with file:
+        shape, fortran, dtype = _header(path, name, file)
+        if dtype.hasobject:
+            raise InputError(f"{path.name}: it holds pickled Python objects, which are not read")
+        size = math.prod(shape) * dtype.itemsize
+        content = file.read(min(size, LARGEST))
+    if len(content) < size:
+        raise InputError(f"{path.name}: {name} is cut short: {len(content)} bytes of data for the shape {shape}")
+    return np.frombuffer(content, dtype).reshape(shape, order="F" if fortran else "C")
+
+
+def _header(path: Path, name: str, file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Shape, whether the first index varies fastest, and kind of number, as NumPy's format has them before the data."""
+    readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+    try:
+        shape, fortran, dtype = readers[np.lib.format.read_magic(file)](file)
+    except (*_UNREADABLE, MemoryError) as error:  # the parser of Python says MemoryError of what is nested too deeply
+        raise InputError(f"{path.name}: {name} does not begin like an array that NumPy has written") from error
+    if any(length < 0 for length in shape):
+        raise InputError(f"{path.name}: {name} cannot have the shape {shape}")
+    return shape, fortran, dtype
 
 
 def _real(path: Path, name: str, array: NDArray[np.generic]) -> NDArray[np.float64]:

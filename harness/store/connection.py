@@ -14,6 +14,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from harness.errors import InputError
+from harness.store.soundness import damage
 
 APPLICATION_ID = 0x68726E73  # "hrns", in the file's header
 SCHEMA_VERSION = 3
@@ -167,14 +168,21 @@ def _is_results(connection: sqlite3.Connection, path: Path) -> bool:
     (state,) = connection.execute("PRAGMA quick_check(1)").fetchone()
     if state != "ok":
         raise sqlite3.DatabaseError(f"malformed: {state}")
+    if (wrong := damage(connection, _tables())) is not None:
+        raise InputError(
+            f"{path}: is damaged: {wrong}; nothing was changed. Keep a copy, and sweep into another file with --db"
+        )
     return True
+
+
+def _tables() -> str:
+    return files("harness.store").joinpath("schema.sql").read_text(encoding="utf-8")
 
 
 def create_tables(connection: sqlite3.Connection) -> None:
     """Make an empty results database."""
     # One transaction, header fields included, so that a file is either empty or whole
-    tables = files("harness.store").joinpath("schema.sql").read_text(encoding="utf-8")
     connection.executescript(
-        f"BEGIN IMMEDIATE;\n{tables}\n"
+        f"BEGIN IMMEDIATE;\n{_tables()}\n"
         f"PRAGMA application_id = {APPLICATION_ID};\nPRAGMA user_version = {SCHEMA_VERSION};\nCOMMIT;"
     )

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints, Pairs
+from harness.errors import InputError
 from harness.store.history import reading
 from harness.vocabulary import WALLS
 
@@ -212,11 +213,18 @@ def recording_of(path: str | Path, experiment: str) -> PointRecording | None:
             return None
         run, key, parameters, facts, bodies, digest = row
         counters = dict(
-            connection.execute("SELECT name, value FROM metric WHERE run = ? AND unit = '1' ORDER BY rowid", (run,))
+            connection.execute(
+                "SELECT name, value FROM metric WHERE run = ? AND unit = '1' AND value IS NOT NULL ORDER BY rowid",
+                (run,),
+            )
         )
-        return PointRecording(
-            key, json.loads(parameters), counters, _read(connection, run, json.loads(facts), bodies, digest)
-        )
+        try:
+            recording = _read(connection, run, json.loads(facts), bodies, digest)
+        except (ValueError, LookupError, TypeError) as error:
+            raise InputError(
+                f"{path}: is damaged: the recording of run {run} cannot be read. Sweep into another file with --db"
+            ) from error
+        return PointRecording(key, json.loads(parameters), counters, recording)
 
 
 def _read(
@@ -231,6 +239,8 @@ def _read(
     legs = [np.frombuffer(data, "<f8").reshape(-1, width) for _, data in frames]
     rows = np.concatenate([*legs, np.empty((0, width))])
     each = np.frombuffer(bodies, "<f8").reshape(-1, 8)
+    if set(rows[:, 0]) != set(range(len(each))):
+        raise ValueError("bodies without a leg, or legs without a body")
     digests = facts.get("meshes", [] if digest is None else [digest])
     return Recording(
         shape=facts["shape"],

@@ -70,3 +70,21 @@ def test_a_refusal_that_is_not_expected_fails_the_sweep(tmp_path, monkeypatch, c
     (tmp_path / "refused.yaml").write_text(REFUSED.replace("where: {count: 23}", "where: {count: 2}"))
     assert main(["sweep", "refused.yaml", "--quiet"]) == 1
     assert "rejected is 0 for count=2 (expected exactly 1)" in capsys.readouterr().out
+
+
+def test_frames_are_held_beside_a_copy_of_the_memory_that_they_cannot_do_without(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = PLAIN.replace("count: 4", "count: 40").replace("box: [5, 5, 5]", "box: [9, 9, 9]")
+    (tmp_path / "plain.yaml").write_text(text + "sweep: {algorithm: [grid, predictive]}\n")
+    (tmp_path / "asking.yaml").write_text(
+        text + "sweep: {algorithm: [grid, predictive]}\nreport: {x: algorithm, y: [times_of_memory]}\n"
+    )
+    assert main(["sweep", "plain.yaml"]) == 0
+    assert all(run["metrics"].get("copy_bandwidth") is None for run in runs(capsys))
+    assert main(["sweep", "asking.yaml", "--fresh"]) == 0
+    of = {run["parameters"]["algorithm"]: run["metrics"] for run in runs(capsys) if run["experiment"] == "asking"}
+    found = of["grid"]
+    frame = found["run_seconds"] / found["frames"]
+    assert found["frame_bytes_per_body"] == 72
+    assert found["times_of_memory"] == pytest.approx(frame / (72 * 40 / found["copy_bandwidth"]))
+    assert of["predictive"].get("times_of_memory") is None

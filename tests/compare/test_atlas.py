@@ -1,5 +1,6 @@
 """The atlas: families are what they say, every wrong verdict counts, and a reproduction stands by itself."""
 
+import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -23,6 +24,7 @@ from harness.scene.box import Box
 from harness.scene.recorded_poses import RecordedPoses
 from harness.scene.scene import Scene
 from harness.vocabulary import FAMILIES
+from tests.compare import liars, recheck
 from tests.compare.liars import install
 from tests.conftest import cube_mesh
 
@@ -138,8 +140,6 @@ def test_an_engine_that_sees_no_overlap_is_wrong_about_all_of_them_and_fcl_about
 
 @pytest.mark.slow
 def test_one_that_misses_overlaps_along_a_vertex_direction_is_found_by_the_aligned_family(tmp_path, monkeypatch):
-    from tests.compare import liars
-
     body = """
         def pairs(self, positions, quaternions):
             apart = positions[1] - positions[0]
@@ -153,6 +153,27 @@ def test_one_that_misses_overlaps_along_a_vertex_direction_is_found_by_the_align
     beyond = {cell.family: cell.beyond for cell in found.cells if cell.engine == name}
     assert beyond["random"] == 0
     assert beyond["aligned"] > 0
+
+
+@pytest.mark.slow
+def test_a_saved_atlas_has_a_row_a_family_and_a_proof_of_every_accusation(tmp_path, monkeypatch, capsys):
+    name = install("blind", tmp_path / "plugins", monkeypatch)
+    source = (EXPERIMENTS / "atlas/short.yaml").read_text(encoding="utf-8")
+    source = source.replace("mesh: cube.ply", f"mesh: {EXPERIMENTS.parent / 'meshes/cube.ply'}")
+    source = source.replace("[random, aligned, grazing, deep, contained, shared, sizes, far, units]", "[deep, random]")
+    (tmp_path / "atlas.yaml").write_text(source.replace("family_poses: 220", "family_poses: 40"))
+    into = tmp_path / "saved"
+    command = ["compare", str(tmp_path / "atlas.yaml"), "--backends", f"fcl,{name}", "--set", "shape=hull"]
+    assert main([*command, "--save", str(into), "--db", str(tmp_path / "r.db")]) == 1
+    cells = (into / "cells.csv").read_text(encoding="utf-8").splitlines()
+    assert cells[0].startswith("engine,family,shape,mesh,verdicts,wrong,beyond,deepest,seconds,failures,query")
+    assert len(cells) == 1 + 2 * 2
+    accusations = json.loads((into / "accusations.json").read_text(encoding="utf-8"))
+    assert {row["engine"] for row in accusations} == {name}
+    assert all(recheck.proven(row) for row in accusations)
+    assert all((into / row["file"]).is_file() for row in accusations)
+    elsewhere = [body | {"position": [9.0 * k, 0, 0]} for k, body in enumerate(accusations[0]["bodies"])]
+    assert not recheck.proven(accusations[0] | {"bodies": elsewhere})
 
 
 def wrong_about(name):

@@ -8,7 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.errors import InputError
+from harness.motion.predictive import grids
 from harness.motion.predictive.simulation import Simulation
+from harness.scene.random_packing import add_at_random
 
 
 def gas(count=200, packing=0.2, seed=3, response="elastic", ratio=1.0, **options):
@@ -318,6 +320,25 @@ def test_mixed_sizes_never_come_to_overlap(seed, ratio, response):
         x, r = simulation.positions, radii[kept]
         gaps = np.linalg.norm(x[:, None] - x[None], axis=2) - r[:, None] - r[None] + 10 * np.eye(len(r))
         assert gaps.min() > -1e-11
+
+
+def test_the_width_of_cells_does_not_show(monkeypatch):
+    """Many small spheres between large ones stand in wider cells than others."""
+    rng = np.random.default_rng(11)
+    radii, half = np.r_[np.full(4, 5.0), np.full(2100, 0.5)], np.full(3, 16.0)
+    positions = add_at_random(radii, half, rng)
+    velocities = rng.normal(size=(len(radii), 3)) / radii[:, None]
+    events, cells = [], []
+    for most in (grids.MIXED_CELLS_PER_SPHERE, grids.CELLS_PER_SPHERE):
+        monkeypatch.setattr(grids, "MIXED_CELLS_PER_SPHERE", most)
+        simulation = Simulation(positions, velocities, radii, radii**3, half, "elastic", record=True)
+        simulation.advance(np.inf, max_events=3000)
+        events.append(simulation.events)
+        cells.append(simulation.counters["cell_crossings"])
+    assert cells[0] < 0.8 * cells[1]
+    for name in ("kind", "i", "j", "wall"):
+        assert np.array_equal(events[0][name], events[1][name])
+    assert np.abs(events[0]["time"] - events[1]["time"]).max() < 1e-11
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
-from harness.motion.predictive.solids import Form
+from harness.motion.predictive.solids import Form, needs_its_surface
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import convex_hull
@@ -284,3 +284,8 @@ def test_the_plan_says_what_is_searched():
         assert plan.keeps("wall_search")
     still = planned(pumpkin, "predictive", frames_of(10, 0.1, "none"))
     assert not still.keeps("wall_search")
+
+
+def test_where_there_are_no_bodies_no_surface_is_searched():
+    none = np.empty((0, 3))
+    assert not needs_its_surface(Scene("mesh", (cube_mesh(),), make_bodies(none, none), Box(np.ones(3))))

@@ -1,7 +1,9 @@
 """Poses that another program recorded: flown as they are, by every method and query, or refused with a reason."""
 
+import io
 import json
 import re
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +155,8 @@ def spoiled(name, arrays):
         del arrays["time"]
     elif name == "pickled":
         arrays["time"] = np.array([None] * 5)
+    elif name == "far":
+        arrays["positions"][1, 1, 2] = 1e200
     np.savez("poses.npz", **arrays)
     if name == "truncated":
         content = Path("poses.npz").read_bytes()
@@ -162,6 +166,33 @@ def spoiled(name, arrays):
     elif name == "large":
         with open("poses.npz", "ab") as file:
             file.truncate(2**30)
+    elif name in HEADERS:  # the first bytes of an array are its own; the number of bytes stays
+        content = Path("poses.npz").read_bytes()
+        Path("poses.npz").unlink()
+        with zipfile.ZipFile(io.BytesIO(content)) as before, zipfile.ZipFile("poses.npz", "w") as after:
+            for array in before.namelist():
+                header = HEADERS[name].ljust(118).encode() + b"\n" if array == "positions.npy" else b""
+                data = before.read(array)
+                after.writestr(array, data[:10] + header + data[10 + len(header) :] if header else data)
+    elif name == "encrypted":
+        content = Path("poses.npz").read_bytes()
+        for sign, flag in ((b"PK\3\4", 6), (b"PK\1\2", 8)):
+            for found in re.finditer(sign, content):
+                at = found.start() + flag
+                content = content[:at] + bytes([content[at] | 1]) + content[at + 1 :]
+        Path("poses.npz").write_bytes(content)
+    elif name == "circle":
+        Path("poses.npz").unlink()
+        Path("poses.npz").symlink_to("circle.npz")
+
+
+HEADERS = {
+    "huge": f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({10**12}, 3, 3), }}",
+    "vast": f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({10**30}, 3, 3), }}",
+    "negative": "{'descr': '<f8', 'fortran_order': False, 'shape': (-5, 3, 3), }",
+    "call": "{'descr': print(), 'fortran_order': False, 'shape': (5, 3, 3), }",
+    "nested": "(" * 118,
+}
 
 
 WRONG = {
@@ -174,6 +205,14 @@ WRONG = {
     "truncated": "this is no .npz file, or it is cut short",
     "text": "this is no .npz file",
     "large": "1024 MiB are too large",
+    "far": r"positions must be within 1e\+30, not 1e\+200",
+    "huge": r"positions is cut short: 360 bytes of data for the shape \(1000000000000, 3, 3\)",
+    "vast": "positions is cut short: 360 bytes of data for the shape",
+    "negative": r"positions cannot have the shape \(-5, 3, 3\)",
+    "call": "positions does not begin like an array that NumPy has written",
+    "nested": "positions does not begin like an array that NumPy has written",
+    "encrypted": "it is encrypted",
+    "circle": 'there are no poses "circle.npz" beside the experiment',
     "count": "count.npz has poses of 3 bodies, not 4",
 }
 

@@ -29,7 +29,7 @@ def write(path, cores, *points, seconds=1.0, name="first"):
             add(database, sweep, point.key, 0, run_seconds=seconds)
             database.add_control(sweep, point.key, 0, "ok", {"run_seconds": seconds})
         database.add_verdicts(sweep, experiment, "claim", [VerdictRow({"metric": "x"}, "holds", "it holds")])
-        database.add_comparison("harness compare", name, ("a", "b"), f"{cores}", {})
+        database.add_comparison("harness compare", name, ("a", "b"), f"{cores}", {"pairs": []})
         database.finish_sweep(sweep)
     return path
 

@@ -1,9 +1,12 @@
 """A recording comes back from the results file as it was put in."""
 
+import sqlite3
 from dataclasses import fields, replace
 
 import numpy as np
+import pytest
 
+from harness.errors import InputError
 from harness.store.database import Database
 from harness.store.recording import NearLines, Recording, Surface, recording_of
 from harness.store.records import PointRow
@@ -95,3 +98,27 @@ def test_a_mixture_keeps_every_mesh_and_which_body_has_which(tmp_path):
 def test_an_experiment_without_a_recording_has_none(tmp_path):
     kept(tmp_path / "r.db", recording())
     assert recording_of(tmp_path / "r.db", "y") is None
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "UPDATE recording SET facts = '{}'",
+        "UPDATE recording SET bodies = zeroblob(100)",
+        "UPDATE frame SET data = x'00'",
+        "DELETE FROM frame",
+    ],
+)
+def test_a_recording_that_is_damaged_is_said(tmp_path, change):
+    kept(tmp_path / "r.db", recording())
+    with sqlite3.connect(tmp_path / "r.db") as raw:
+        raw.execute(change)
+    with pytest.raises(InputError, match="is damaged: the recording of run 1 cannot be read"):
+        recording_of(tmp_path / "r.db", "x")
+
+
+def test_a_counter_that_was_measured_and_is_no_number_is_not_among_those_of_a_recording(tmp_path):
+    kept(tmp_path / "r.db", recording())
+    with sqlite3.connect(tmp_path / "r.db") as raw:
+        raw.execute("UPDATE metric SET value = NULL")
+    assert recording_of(tmp_path / "r.db", "x").counters == {}

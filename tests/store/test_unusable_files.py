@@ -217,3 +217,33 @@ def test_results_in_a_read_only_folder_can_be_read(read_only: Path) -> None:
         raise AssertionError([record.name for record in tables.experiments(read_only)])
 
     assert as_nobody(read) == "AssertionError: ['first']"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("UPDATE point SET parameters = '{'", "point.parameters is no JSON object"),
+        ("UPDATE point SET parameters = '[1]'", "point.parameters is no JSON object"),
+        ("UPDATE metric SET value = 'abc'", "metric.value is no number"),
+        ("UPDATE run SET repeat = 'abc'", "run.repeat is no number"),
+        ("UPDATE run SET sweep = 77", "a row of run refers to a row of sweep that is not there"),
+        ("DROP TABLE claim", "claim lacks criterion"),
+        ("DROP VIEW current_run", "current_run lacks conditions"),
+        ("ALTER TABLE run RENAME COLUMN reason TO why", "run lacks reason"),
+        (
+            "INSERT INTO comparison VALUES (1, 'e', 'fcl', 'pybullet', '', '', 'k', '{}')",
+            "comparison.document tells neither of pairs of backends nor of cases",
+        ),
+    ],
+)
+def test_rows_that_the_program_does_not_write_are_damage_too(path: Path, change: str, message: str) -> None:
+    with Database.open(path) as database:
+        sweep = begin(database)
+        listed(database, sweep, GRID)
+        add(database, sweep, GRID.key, frames=30.0)
+    raw = sqlite3.connect(path)
+    raw.executescript(f"PRAGMA ignore_check_constraints = ON; {change}")
+    raw.close()
+    for use in (Database.open, tables.runs):
+        with pytest.raises(InputError, match=f"is damaged: {message}.*; nothing was changed"):
+            use(path)

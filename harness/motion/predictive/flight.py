@@ -21,7 +21,7 @@ from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
 from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
 from harness.motion.predictive.ignored import without_ignored
-from harness.motion.predictive.lookahead import prefetch_ahead
+from harness.motion.predictive.lookahead import prefetch_ahead, prefetch_next
 from harness.motion.predictive.neighbours import renew, time_to_leave
 from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.pair_search import first_onset, first_touch
@@ -80,6 +80,8 @@ def event_loop(crowded: bool) -> Callable[[World, float, int], Stop]:
                     schedule_next(world, who, now)
                     if rules.prefetching:
                         prefetch_ahead(world, who, crowded)
+                    else:
+                        prefetch_next(world, who)
 
     return fly
 

@@ -1,7 +1,8 @@
 """Prefetching: what the events after the next will need is read into the cache while the next one is worked on.
 
 From some 4000 spheres on, most of an event is waiting for memory: its sphere, the partner, the cells around. The tree
-shows who is due soon; asking early costs a few instructions.
+shows who is due soon; asking early costs a few instructions. The records of that sphere itself are worth asking for
+however few there are: 1.3 times the rate at 10^4, 1.03 times at 10^3.
 """
 
 from __future__ import annotations
@@ -12,12 +13,24 @@ from harness.motion.predictive.codes import Event, NeighbourSearch
 from harness.motion.predictive.state import EventQueue, Record, World
 from harness.prefetch import prefetch
 
-# Levels of the tree at which a winner's records, its cells or list, and its neighbours' motions are prefetched.
+# Levels of the tree at which a winner's records, its cells or list, and its neighbours' motions are prefetched, and the
+# one for its records where they are all.
 SPHERE_LEVEL, AROUND_LEVEL, NEIGHBOURS_LEVEL = 6, 5, 4
+ALONE_LEVEL = 4
 # Levels from a leaf on of which the nodes are prefetched.
 PATH_LEVELS = 9
 # Neighbours in the first cache line of a list.
 IN_A_LINE = 15
+
+
+@step
+def prefetch_next(world: World, k: int) -> None:
+    """After an update from sphere k's leaf: prefetch the records of a winner on its way up."""
+    queue, spheres = world.queue, world.spheres
+    leaf = queue.time_bits.size // 2 + k
+    soon = int(queue.winners[leaf >> max(world.rules.depth - ALONE_LEVEL, 0)])
+    prefetch(spheres.motions, soon)
+    prefetch(spheres.schedule, soon)
 
 
 @step

@@ -64,7 +64,8 @@ def needs_its_surface(scene: Scene) -> bool:
 
     Convex meshes do not, unless one is wholly inside another, which equal bodies cannot be.
     """
-    convex = all(mesh.convex for mesh in scene.meshes) and np.ptp(scene.bodies.sizes) == 0.0
+    equal = len(set(scene.bodies.sizes.tolist())) < 2  # none at all, too
+    convex = all(mesh.convex for mesh in scene.meshes) and equal
     return scene.shape == "mesh" and not convex
 
 

@@ -211,7 +211,7 @@ class Rules(NamedTuple):
     events_per_base: int  # from one re-basing of time to the next
     depth: int  # levels of the tournament tree
     bases_per_order: int  # re-basings of time from one re-ordering of memory to the next, 0 = never
-    prefetching: bool  # the spheres are too many for the cache
+    prefetching: bool  # more than the next sphere's records, as the spheres are too many for the cache
 
 
 class Totals(NamedTuple):

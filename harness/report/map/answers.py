@@ -47,7 +47,7 @@ class Answer:
 
 def answers(made: MethodMap) -> list[Answer]:
     """Of every field of a map, row by row."""
-    fields = sorted(made.fields, key=lambda field: (field.y, field.x))
+    fields = sorted(made.fields, key=lambda field: (made.ys.index(field.y), made.xs.index(field.x)))
     return [_answer(made, field) for field in fields]
 
 

@@ -102,12 +102,12 @@ class MethodMap:
     @cached_property
     def xs(self) -> list[Any]:
         """Values of x, in order."""
-        return sorted({field.x for field in self.fields})
+        return sorted({field.x for field in self.fields}, key=_numbers_first)
 
     @cached_property
     def ys(self) -> list[Any]:
         """Values of y, in order."""
-        return sorted({field.y for field in self.fields})
+        return sorted({field.y for field in self.fields}, key=_numbers_first)
 
     @cached_property
     def winners(self) -> list[MethodName]:
@@ -118,6 +118,11 @@ class MethodMap:
     def letters(self) -> dict[MethodName, str]:
         """By which each is known on the map."""
         return {method: letter(method) for method in self.winners}
+
+
+def _numbers_first(value: Any) -> tuple[bool, Any]:
+    """By which values of a leaf are sorted, some of which may be words."""
+    return isinstance(value, str), value
 
 
 def maps_of(pages: Iterable[ExperimentPage]) -> list[MethodMap]:

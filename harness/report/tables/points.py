@@ -21,6 +21,7 @@ _CLOCKS = tuple(name for name, metric in METRICS.items() if metric.clock and met
 _OTHERS = tuple(
     name for name, metric in METRICS.items() if metric.tabulated and not metric.clock and name not in _TESTS
 )
+_MEMORY = ("run_seconds", "copy_bandwidth", "frame_bytes_per_body", "times_of_memory")
 _MOST_ROWS = 100
 
 
@@ -48,6 +49,18 @@ def clocks_table(arrangement: Arrangement) -> Table | None:
 def others_table(arrangement: Arrangement) -> Table | None:
     """Everything else that was counted: hits, errors, memory."""
     return _points_table(arrangement, "Hits, errors and memory", "Medians over the repeats.", _OTHERS)
+
+
+def memory_table(arrangement: Arrangement) -> Table | None:
+    """Frames beside the time that their least traffic of memory takes, where an experiment asks for it."""
+    if not any(point.summary("times_of_memory") for point in arrangement.points):
+        return None
+    note = (
+        "A frame that places every body reads its place and velocity and writes its place, of turning bodies their "
+        "orientation and spin too. Times of memory: how many times as long a frame takes as a plain copy, on one core "
+        f"after the same run, needs for as many bytes; {medians_text(arrangement)}."
+    )
+    return _points_table(arrangement, "How far from memory", note, _MEMORY)
 
 
 def _points_table(arrangement: Arrangement, name: str, note: str, metrics: Sequence[str]) -> Table | None:

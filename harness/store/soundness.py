@@ -1,0 +1,71 @@
+"""Whether a results file holds what the program writes: SQLite itself only knows whether its pages are whole."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+
+# Columns of JSON objects, by their tables.
+_OBJECTS = {
+    "machine": ("facts",),
+    "sweep": ("packages",),
+    "experiment": ("specification",),
+    "point": ("parameters", "plan"),
+    "run": ("conditions",),
+    "control": ("metrics",),
+    "recording": ("facts",),
+    "expectation": ("criterion", "detail"),
+    "claim": ("criterion", "detail"),
+    "comparison": ("document",),
+}
+_NUMBERS = {"run": "repeat", "control": "repeat"}
+
+
+def damage(connection: sqlite3.Connection, tables: str) -> str | None:
+    """What is wrong first with the rows of a results file; None if nothing is.
+
+    Parameters
+    ----------
+    connection : that can read it
+    tables : SQL of the tables as the program makes them
+    """
+    return next(_damages(connection, tables), None)
+
+
+def _damages(connection: sqlite3.Connection, tables: str) -> Iterator[str]:
+    with closing(sqlite3.connect(":memory:")) as made:
+        made.executescript(tables)
+        for name, columns in _columns(made).items():
+            if lacking := columns - _columns(connection).get(name, set()):
+                yield f"{name} lacks {', '.join(sorted(lacking))}"
+    for table, columns_of_json in _OBJECTS.items():
+        for column in columns_of_json:
+            # the case keeps json_type from what is no JSON, which it would raise an error for
+            object_or_not = f"CASE WHEN json_valid({column}) THEN json_type({column}) END"
+            if _any(connection, table, f"{object_or_not} IS NOT 'object'"):
+                yield f"{table}.{column} is no JSON object"
+    found = "json_type(document, '$.pairs') IS NOT 'array' AND json_type(document, '$.truth') IS NOT 'object'"
+    if _any(connection, "comparison", found):
+        yield "comparison.document tells neither of pairs of backends nor of cases"
+    for table, column in _NUMBERS.items():
+        if _any(connection, table, f"typeof({column}) <> 'integer'"):
+            yield f"{table}.{column} is no number"
+    if _any(connection, "metric", "typeof(value) NOT IN ('real', 'integer', 'null')"):
+        yield "metric.value is no number"
+    for table, _, other, _ in connection.execute("PRAGMA foreign_key_check"):
+        yield f"a row of {table} refers to a row of {other} that is not there"
+
+
+def _columns(connection: sqlite3.Connection) -> dict[str, set[str]]:
+    """The columns of each table and view."""
+    names = connection.execute("SELECT name FROM sqlite_master WHERE type IN ('table', 'view')").fetchall()
+    return {
+        name: {column for (column,) in connection.execute("SELECT name FROM pragma_table_info(?)", (name,))}
+        for (name,) in names
+    }
+
+
+def _any(connection: sqlite3.Connection, table: str, condition: str) -> bool:
+    (found,) = connection.execute(f"SELECT EXISTS (SELECT * FROM {table} WHERE {condition})").fetchone()
+    return bool(found)
