@@ -35,12 +35,8 @@ class Penetration:
         """
         if not len(pairs):
             return 0.0
-        depths = _sphere_depths(pairs, positions, self._sizes)
-        if self._hulls:
-            # bounding spheres bound the depth from above, whatever the hull's own answer is
-            depths = np.minimum(depths, self._hulls.depths(pairs, positions, quaternions))
-        mean_sizes = self._sizes[pairs].mean(axis=1)
-        return max(0.0, float((depths / mean_sizes).max()))
+        depths = _NO_DEPTHS if self._hulls is None else self._hulls.depths(pairs, positions, quaternions)
+        return float(_deepest(pairs, positions, self._sizes, depths))
 
 
 class _HullDepth:
@@ -68,11 +64,20 @@ class _HullDepth:
         return depths
 
 
+_NO_DEPTHS: Floats = np.empty(0)
+
+
 @kernel
-def _sphere_depths(pairs: Pairs, positions: Floats, sizes: Floats) -> Floats:
-    depths = np.empty(len(pairs))
+def _deepest(pairs: Pairs, positions: Floats, sizes: Floats, depths: Floats) -> float:
+    """Largest depth / mean size, or 0; without depths (k,) in m those of the bounding spheres."""
+    deepest = 0.0
     for k in range(len(pairs)):
         i, j = pairs[k]
         x, y, z = positions[j] - positions[i]
-        depths[k] = 0.5 * (sizes[i] + sizes[j]) - sqrt(x * x + y * y + z * z)
-    return depths
+        reach = 0.5 * (sizes[i] + sizes[j])
+        depth = reach - sqrt(x * x + y * y + z * z)
+        if len(depths):
+            # bounding spheres bound the depth from above, whatever the hull's own answer is
+            depth = min(depth, depths[k])
+        deepest = max(deepest, depth / reach)
+    return deepest
