@@ -170,6 +170,7 @@ def test_a_locked_file_is_refused_after_a_while(trouble, capsys, monkeypatch):
     holder.close()
 
 
+@pytest.mark.slow
 def test_a_second_sweep_on_one_file_is_refused_with_the_first_one_named(trouble, capsys):
     code = (
         "import sys; from harness.store.database import Database as D; D.open(sys.argv[1]); print(flush=True); input()"

@@ -14,7 +14,7 @@ from harness.reference.hit_errors import hit_errors
 from harness.reference.scene_contacts import scene_contacts
 from harness.scene.scene import Scene
 from harness.vocabulary import MethodName
-from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.conftest import cube_mesh, make_bodies, random_scene, slow_beyond
 
 CULLED = ("grid", "sap", "tree")
 SHAPES = ("sphere", "hull", "mesh")
@@ -92,7 +92,7 @@ def test_the_gaps_of_a_run_are_those_of_every_pair_by_itself(shape):
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("dt", [1.0, 0.1])
+@pytest.mark.parametrize("dt", slow_beyond([1.0, 0.1]))
 def test_every_hit_of_the_reference_is_found_at_its_time_however_long_a_frame_is(shape, dt):
     scene, law = mixed(shape), MotionLaw(2.0, dt, "none")
     contacts = scene_contacts(scene, law.duration, 1e-9)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.conftest import make_bodies, random_scene
+from tests.conftest import make_bodies, random_scene, slow_beyond
 from tests.methods import flights
 from tests.methods.flights import frames_of
 
@@ -48,8 +48,8 @@ def test_walls_are_answered_after_pairs_with_what_these_left():
     assert trace.velocities[:, 0].tolist() == [-1, -2]
 
 
-@pytest.mark.parametrize("response", ["reflect", "elastic"])
-@pytest.mark.parametrize("shape", ["sphere", pytest.param("hull", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("response", slow_beyond(["reflect", "elastic"]))
+@pytest.mark.parametrize("shape", slow_beyond(["sphere", "hull"]))
 def test_energy_is_kept_and_no_centre_leaves_a_crowded_box(shape, response):
     metrics = fly(random_scene(shape, 30, 3.0), frames=300, response=response).metrics
     assert metrics["pair_hits"] > 100
