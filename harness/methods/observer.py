@@ -85,8 +85,9 @@ class Observer:
             if len(answered):
                 self.digest.add_pairs(time, answered)
             if self._penetration is not None:
-                deepest = self._penetration.deepest(pairs, self._trajectory.positions, self._trajectory.quaternions)
-                self.max_penetration = max(self.max_penetration, deepest)
+                self.max_penetration = self._penetration.deepest(
+                    pairs, self._trajectory.positions, self._trajectory.quaternions, self.max_penetration
+                )
             if self.log is not None:
                 if times is None:
                     self.log.add_pairs(time, answered)
