@@ -18,6 +18,10 @@ SLOW = (
 )
 
 
+# Named when they load or at their first hits, so that few poses do.
+AT_ONCE = ("blind", "sees-all", *BY_CONTRACT, *BY_CLAIM)
+
+
 def marked(names):
     return [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in names]
 
@@ -41,7 +45,7 @@ def judged(tmp_path_factory):
         if name not in known:
             with pytest.MonkeyPatch.context() as patch:
                 names = ["fcl", install(name, tmp_path_factory.mktemp("plugins"), patch), "pybullet"]
-                frames = 4 if name in ("blind", "sees-all") else 24
+                frames = 4 if name in AT_ONCE else 24
                 known[name] = compare([crowd(frames)], names, timeout=5.0)
         return known[name]
 

@@ -186,6 +186,7 @@ def test_without_the_extra_the_command_to_install_it_is_said(small, capsys, monk
     assert "pip install 'harness[cluster]'" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_workers_that_cannot_be_started_are_a_sentence(small, capsys, monkeypatch):
     def refuse(**_):
         raise RuntimeError("Nanny failed to start.")
