@@ -42,7 +42,9 @@ class Threads:
         items : how many there are
         fewest : in a part; to hand over fewer, at some 10 us a part, would take longer than to do them
         """
-        parts = 1 if self.count == 1 else max(1, min(_PARTS * self.count, items // fewest))
+        if self.count == 1 or items < 2 * fewest:  # most frames, of which each asks: a microsecond counts
+            return ((0, items),)
+        parts = min(_PARTS * self.count, items // fewest)
         return tuple((items * part // parts, items * (part + 1) // parts) for part in range(parts))
 
     def each(self, work: Callable[[int, int], Result], parts: tuple[tuple[int, int], ...]) -> list[Result]:

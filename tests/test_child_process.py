@@ -16,6 +16,7 @@ import pytest
 from harness import process_limits
 from harness.child_process import Child, Ending, guarded
 from harness.process_limits import limit
+from tests.conftest import slow_beyond
 
 SOON = 20.0
 
@@ -234,7 +235,9 @@ def test_a_limit_that_is_lower_already_is_not_raised():
         assert child.receive(SOON) == b"(1000, 1000)"
 
 
-@pytest.mark.parametrize("way", [lambda: os._exit(3), os.abort, lambda: os.kill(os.getpid(), 9), lambda: None])
+@pytest.mark.parametrize(
+    "way", slow_beyond([lambda: os._exit(3), os.abort, lambda: os.kill(os.getpid(), 9), lambda: None], 2)
+)
 def test_what_a_guarded_child_left_behind_ends_with_it_whatever_its_end(way):
     def leave(channel):
         started = os.fork()

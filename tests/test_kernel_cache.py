@@ -1,5 +1,6 @@
 """A kernel is compiled anew where its file is missing, cut short, or cannot be kept."""
 
+import runpy
 import shutil
 import subprocess
 import sys
@@ -10,30 +11,32 @@ import pytest
 from harness.kernel_cache import PACKAGE, _Turn, all_sources, forgiving, user_cache
 
 KERNEL = """
-import sys
-import numba
-numba.config.CACHE_DIR = sys.argv[1]
 from harness.kernel import kernel
 
 @kernel
 def twice(x):
     return 2 * x
-
+"""
+PROGRAM = f"""
+import sys
+import numba
+numba.config.CACHE_DIR = sys.argv[1]
+{KERNEL}
 print(twice(21), sum(twice.stats.cache_hits.values()))
 """
 
 
 @pytest.fixture
-def run(tmp_path):
-    """Runs a program with one kernel; its answer, and whether the kernel came from its file."""
-    program, folder = tmp_path / "program.py", tmp_path / "kept"
-    program.write_text(KERNEL)
+def run(tmp_path, monkeypatch):
+    """Executes a module with one kernel anew and calls it; whether the kernel came from its file."""
+    module, folder = tmp_path / "module.py", tmp_path / "kept"
+    module.write_text(KERNEL)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(folder))
 
     def once():
-        done = subprocess.run([sys.executable, program, folder], capture_output=True, text=True, check=True)
-        answer, hits = map(int, done.stdout.split())
-        assert answer == 42
-        return bool(hits)
+        kernel = runpy.run_path(str(module))["twice"]
+        assert kernel(21) == 42
+        return bool(sum(kernel.stats.cache_hits.values()))
 
     assert not once()
     assert once()
@@ -75,7 +78,7 @@ def test_a_full_disk_costs_the_file_of_a_kernel_and_not_the_kernel():
 @pytest.mark.slow
 def test_of_processes_that_need_a_kernel_at_once_one_compiles_it(tmp_path):
     program = tmp_path / "program.py"
-    program.write_text(KERNEL)
+    program.write_text(PROGRAM)
     command = [sys.executable, program, tmp_path / "kept"]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(3)]
     answers = [process.communicate(timeout=120)[0].split() for process in started]

@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from harness.process_limits import out_of_memory
+from tests.conftest import slow_beyond
 
 
 def raised_from(inner):
@@ -35,7 +36,7 @@ def test_an_error_for_want_of_memory_is_told_from_others(error, told):
     assert out_of_memory(error) is told
 
 
-@pytest.mark.parametrize("megabytes", [400, 500])
+@pytest.mark.parametrize("megabytes", slow_beyond([400, 500]))
 def test_a_command_without_room_for_its_libraries_says_so_instead_of_waiting(megabytes, tmp_path):
     ended = subprocess.run(
         [sys.executable, "-m", "harness", "report"],

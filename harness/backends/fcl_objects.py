@@ -8,12 +8,14 @@ Meshes and hulls are valid here, for the scene has checked them, but for faces w
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import fcl
 import numpy as np
 
 from harness.arrays import Floats, Ints
 from harness.narrowphase.units import unit_of_smallest
-from harness.scene.mesh import Triangles, has_area
+from harness.scene.mesh import Mesh, Triangles, has_area
 from harness.scene.scene import Scene, Solid
 
 UNITS = "the smallest size is about 32, by a power of two"
@@ -96,11 +98,25 @@ class FclObjects:
         self.objects[body].setTranslation(position / self.unit)
 
 
+# By mesh, then by shape and size in units. A run loads its scene twice, and a judge many scenes of the same meshes.
+_made: WeakKeyDictionary[Mesh, dict[tuple[str, float], fcl.CollisionGeometry]] = WeakKeyDictionary()
+
+
 def _geometry(scene: Scene, shared: Solid, unit: float) -> fcl.CollisionGeometry:
     """Of bodies that share a mesh and a size, in units; m each."""
     mesh, size = shared
     if scene.shape == "sphere":
         return fcl.Sphere(size / unit / 2)
+    if shared in scene.hulls:
+        return _new_geometry(scene, shared, unit)
+    made, key = _made.setdefault(scene.meshes[mesh], {}), (scene.shape, size / unit)
+    if key not in made:
+        made[key] = _new_geometry(scene, shared, unit)
+    return made[key]
+
+
+def _new_geometry(scene: Scene, shared: Solid, unit: float) -> fcl.CollisionGeometry:
+    mesh, size = shared
     solid = scene.solid_of(size, mesh)
     # the unit is a power of two, so neither product loses a digit
     if scene.shape == "hull":

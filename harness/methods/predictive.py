@@ -268,7 +268,7 @@ class _Depth:
     def measure(self, positions: Floats, time: float) -> None:
         pairs = self._broad_phase.close_pairs(positions)
         self._trajectory.move_to(time)
-        self.deepest = max(self.deepest, self._penetration.deepest(pairs, positions, self._trajectory.quaternions))
+        self.deepest = self._penetration.deepest(pairs, positions, self._trajectory.quaternions, self.deepest)
 
 
 def _trace(scene: Scene, plan: Plan, simulation: Simulation, duration: float, counted: dict[str, int]) -> Trace:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
+from functools import cache
 
 # Columns of JSON objects, by their tables.
 _OBJECTS = {
@@ -34,11 +35,10 @@ def damage(connection: sqlite3.Connection, tables: str) -> str | None:
 
 
 def _damages(connection: sqlite3.Connection, tables: str) -> Iterator[str]:
-    with closing(sqlite3.connect(":memory:")) as made:
-        made.executescript(tables)
-        for name, columns in _columns(made).items():
-            if lacking := columns - _columns(connection).get(name, set()):
-                yield f"{name} lacks {', '.join(sorted(lacking))}"
+    held = _columns(connection)
+    for name, columns in _columns_made(tables).items():
+        if lacking := columns - held.get(name, set()):
+            yield f"{name} lacks {', '.join(sorted(lacking))}"
     for table, columns_of_json in _OBJECTS.items():
         for column in columns_of_json:
             # the case keeps json_type from what is no JSON, which it would raise an error for
@@ -55,6 +55,14 @@ def _damages(connection: sqlite3.Connection, tables: str) -> Iterator[str]:
         yield "metric.value is no number"
     for table, _, other, _ in connection.execute("PRAGMA foreign_key_check"):
         yield f"a row of {table} refers to a row of {other} that is not there"
+
+
+@cache
+def _columns_made(tables: str) -> dict[str, set[str]]:
+    """The columns of each table and view that SQL makes."""
+    with closing(sqlite3.connect(":memory:")) as made:
+        made.executescript(tables)
+        return _columns(made)
 
 
 def _columns(connection: sqlite3.Connection) -> dict[str, set[str]]:

@@ -148,6 +148,7 @@ def test_a_cast_that_does_not_end_costs_its_own_answer_only(casts, goes_wrong):
         assert asked.unanswered == again
 
 
+@pytest.mark.slow
 def test_the_time_of_a_child_is_time_of_the_answer():
     pytest.importorskip("rapier3d")
     backend, scene = registry.create("rapier3d"), random_scene("hull", 40, 4.5, seed=4)

@@ -51,7 +51,7 @@ def test_why_a_strangers_backend_cannot_be_used_is_told_in_one_line(installed, w
     assert missing("odd") is None  # it is no extra: its runs will say it
 
 
-@pytest.mark.parametrize("way", ["goes elsewhere", "prints without end", "leaves a process"])
+@pytest.mark.parametrize("way", slow_beyond(["goes elsewhere", "prints without end", "leaves a process"]))
 def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, capfd):
     installed(way)
     here = os.getcwd()
@@ -121,6 +121,7 @@ def test_that_one_of_ours_lacks_a_package_is_known_until_there_is_one(tmp_path, 
     _asked.cache_clear()
 
 
+@pytest.mark.slow
 def test_a_list_names_all_the_others_beside_one_that_exits(installed, capsys):
     installed("exits")
     assert main(["list", "--json"]) == 0

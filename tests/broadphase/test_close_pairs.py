@@ -12,6 +12,7 @@ from harness.broadphase.pairs import BroadPhase
 from harness.broadphase.sap import SweepAndPrune
 from harness.broadphase.uniform_grid import UniformGrid
 from harness.scene.box import Box
+from tests.conftest import slow_beyond
 
 METHODS = ("brute force", "grid", "hierarchical grid")
 PLACES = ("inside", "near", "wall", "corner", "outside", "coincident", "touching", "lattice")
@@ -123,7 +124,7 @@ def test_nobody_and_one_body_have_no_pairs(method, count):
     assert make(method, np.ones(count)).close_pairs(np.zeros((count, 3))).shape == (0, 2)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", slow_beyond(METHODS))
 def test_two_thousand_bodies_in_one_place_are_two_million_pairs(method):
     radii = np.full(2000, 0.5)
     detector = make(method, radii)
@@ -132,7 +133,7 @@ def test_two_thousand_bodies_in_one_place_are_two_million_pairs(method):
         assert np.array_equal(detector.close_pairs(np.full((2000, 3), 0.25)), expected)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 4.0])
+@pytest.mark.parametrize("ratio", slow_beyond([4.0, 1.0]))
 def test_more_cells_than_the_smallest_buckets_hold_are_sorted_as_well(ratio):
     rng = np.random.default_rng(23)
     radii = rng.choice([0.5, 0.5 / ratio], 150_000)
@@ -260,7 +261,7 @@ def test_touching_pairs_of_any_ratio_are_found_wherever_cells_end(axis, ratio):
     assert_exact(positions, radii, half)
 
 
-@pytest.mark.parametrize("ratio", [10.0, 100.0])
+@pytest.mark.parametrize("ratio", slow_beyond([10.0, 100.0]))
 def test_many_small_bodies_all_over_a_few_large_ones_are_found(ratio):
     rng = np.random.default_rng(19)
     radii = np.append(np.full(20, 0.5), np.full(2000, 0.5 / ratio))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from harness.broadphase.brute_force import BruteForce
 from harness.broadphase.sap import LANES, SweepAndPrune
 from harness.scene.box import Box
-from tests.conftest import examples
+from tests.conftest import examples, slow_beyond
 
 PLACES = ("inside", "near", "wall", "corner", "outside", "coincident", "touching", "lattice", "plane")
 MOTIONS = ("rest", "drift", "leap", "anew", "mirror", "flatten", "collapse", "shift", "leave")
@@ -130,6 +130,7 @@ def test_no_body_one_and_a_few_in_the_same_place_are_found_in_every_frame(count,
         assert np.array_equal(pairs, np.stack(np.triu_indices(count, 1), axis=1))
 
 
+@pytest.mark.slow
 def test_two_thousand_bodies_in_one_place_are_two_million_pairs():
     detector = SweepAndPrune(np.full(2000, 0.5), Box(np.ones(3)))
     expected = np.stack(np.triu_indices(2000, 1), axis=1)
@@ -254,7 +255,7 @@ def test_pairs_of_equal_places_are_tested_once_each():
     assert detector.pair_tests == 30 * 45
 
 
-@pytest.mark.parametrize("packing", [0.05, 0.3])
+@pytest.mark.parametrize("packing", slow_beyond([0.3, 0.05]))
 def test_pair_tests_grow_with_the_power_five_thirds_in_a_cube_and_linearly_in_a_tube(packing):
     def exponent(shape):
         tests = []

@@ -90,6 +90,7 @@ def test_an_expectation_that_fails_is_named_and_exits_1(small, capsys):
     assert "small: expectation fails: frames" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_experiments_share_the_runs_of_a_point(small, capsys):
     (small / "other.yaml").write_text(EXPERIMENT.replace("title: Small", "title: Other"))
     assert main(["sweep", "small.yaml", "other.yaml", "--set", "count=2"]) == 0

@@ -19,7 +19,7 @@ EXPERIMENT = """
 title: Trouble
 scene: {shape: sphere, count: 4, box: [5, 5, 5]}
 motion: {duration: 0.2}
-measure: {repeats: 3}
+measure: {repeats: 1}
 """
 
 
@@ -114,7 +114,7 @@ def test_a_file_that_goes_while_a_sweep_writes_is_said(trouble, capsys, monkeypa
             os.truncate(trouble, 5000)
 
     monkeypatch.setattr(Database, "add_run", add_run)
-    assert main(["sweep", "trouble.yaml", "--db", str(trouble), "--quiet", "--fresh"]) == 2
+    assert main(["sweep", "trouble.yaml", "--db", str(trouble), "--quiet", "--fresh", "--set", "repeats=2"]) == 2
     said = capsys.readouterr().err
     assert ("was removed or replaced while it was written to" if becomes != "shorter" else "is damaged") in said
 
@@ -170,6 +170,7 @@ def test_a_locked_file_is_refused_after_a_while(trouble, capsys, monkeypatch):
     holder.close()
 
 
+@pytest.mark.slow
 def test_a_second_sweep_on_one_file_is_refused_with_the_first_one_named(trouble, capsys):
     code = (
         "import sys; from harness.store.database import Database as D; D.open(sys.argv[1]); print(flush=True); input()"

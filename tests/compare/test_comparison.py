@@ -7,7 +7,7 @@ import pytest
 from harness.cli.main import main
 from harness.compare.comparison import compare
 from harness.compare.poses import flown
-from tests.conftest import random_scene
+from tests.conftest import random_scene, slow_beyond
 from tests.narrowphase.meshes import crowd, mesh_named
 
 EXPERIMENT = """
@@ -63,7 +63,7 @@ def test_a_defect_is_caught_and_its_backend_named(name, count, defective, tmp_pa
         assert case["certificate"]["kind"]
 
 
-@pytest.mark.parametrize("name", ["inflates", "unturned"])
+@pytest.mark.parametrize("name", slow_beyond(["inflates", "unturned"]))
 def test_a_defect_of_turned_shapes_is_caught_as_bodies_fly(name, defective):
     defective(name)
     found = compare([flown(random_scene("hull", 20, 3.0), 10, 0.1)], ["fcl", name])

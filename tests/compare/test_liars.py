@@ -14,7 +14,7 @@ from tests.conftest import cube_mesh, random_scene
 SLOW = (
     *("drops-at-random", "random-verdicts", "drops-neighbours", "last-frame", "halves-hulls", "inflates-by-1e-3"),
     *("spheres-for-all", "sees-all", "doubles", "unsorted", "turned-round", "out-of-range"),
-    *("floats", "tolerates-nan", "raises"),
+    *("floats", "tolerates-nan", "raises", "blind"),
 )
 
 
@@ -124,6 +124,7 @@ def test_a_contact_that_is_over_is_none():
         assert hit == (apart <= 2 / np.sqrt(3)) or abs(apart - 2 / np.sqrt(3)) < 1e-3
 
 
+@pytest.mark.slow
 def test_each_method_is_asked_once_a_pose_and_once_more_in_another_order(liar, tmp_path):
     scene = random_scene("sphere", 4, 3.0)
     asked = []

@@ -15,6 +15,7 @@ ROWS = json.loads(PUBLISHED.read_text())
 SHOWN = [row for row in ROWS if row["file"]]
 
 
+@pytest.mark.slow
 def test_plain_fractions_prove_every_accusation():
     assert len(ROWS) >= 20
     for row in ROWS:

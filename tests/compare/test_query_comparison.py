@@ -15,7 +15,7 @@ from harness.compare.question import Question
 from harness.scene.box import Box
 from harness.scene.scene import Scene
 from tests.compare.liars import QUERY_LIARS, install
-from tests.conftest import cube_mesh, make_bodies, random_scene
+from tests.conftest import cube_mesh, make_bodies, random_scene, slow_beyond
 
 DISTANCE, NEAR, IMPACT = (Question(query, 0.2) for query in ("distance", "tolerance", "impact"))
 HONEST = ("fcl", "fcl/grid")
@@ -36,7 +36,7 @@ def named(found):
     return {case.wrong for case in found.cases + found.shared} | {failure.backend for failure in found.failures}
 
 
-@pytest.mark.parametrize("question", [DISTANCE, NEAR, IMPACT], ids=lambda question: question.query)
+@pytest.mark.parametrize("question", slow_beyond([DISTANCE, NEAR, IMPACT]), ids=lambda question: question.query)
 @pytest.mark.parametrize("shape", [pytest.param("sphere", marks=pytest.mark.slow), "hull"])
 def test_honest_methods_are_not_accused(question, shape):
     found = compare([crowd(question, shape)], HONEST)

@@ -47,6 +47,7 @@ def test_all_problems_are_said_at_once_in_the_order_of_the_file(problems_in: Pro
     ]
 
 
+@pytest.mark.slow
 def test_a_flood_of_problems_is_cut_short(problems_in: ProblemsIn) -> None:
     messages = problems_in("\n".join(f"key{i}: 1" for i in range(5000)))
     assert len(messages) == 101

@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from harness.methods.penetration import Penetration, _HullDepth
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.conftest import make_bodies, random_scene
+from tests.conftest import make_bodies, random_scene, slow_beyond
 from tests.methods import flights
 from tests.methods.flights import frames_of
 
@@ -48,8 +49,8 @@ def test_walls_are_answered_after_pairs_with_what_these_left():
     assert trace.velocities[:, 0].tolist() == [-1, -2]
 
 
-@pytest.mark.parametrize("response", ["reflect", "elastic"])
-@pytest.mark.parametrize("shape", ["sphere", pytest.param("hull", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("response", slow_beyond(["reflect", "elastic"]))
+@pytest.mark.parametrize("shape", slow_beyond(["sphere", "hull"]))
 def test_energy_is_kept_and_no_centre_leaves_a_crowded_box(shape, response):
     metrics = fly(random_scene(shape, 30, 3.0), frames=300, response=response).metrics
     assert metrics["pair_hits"] > 100
@@ -109,3 +110,20 @@ def test_forcing_the_wall_cull_off_changes_no_event():
     kept, forced = fly(scene, backend="pybullet"), fly(scene, backend="pybullet", forced={"wall_cull": False})
     assert kept.trace.times.tolist() == forced.trace.times.tolist()
     assert kept.trace.bodies.tolist() == forced.trace.bodies.tolist()
+
+
+def test_hulls_are_asked_how_deep_they_are_only_where_they_may_be_deepest(monkeypatch):
+    scene = random_scene("hull", 40, 4.0)
+    touching = np.array([[i, j] for i in range(40) for j in range(i + 1, 40)])
+    apart = np.linalg.norm(scene.bodies.positions[touching[:, 0]] - scene.bodies.positions[touching[:, 1]], axis=1)
+    touching = touching[apart < 0.6]
+    poses, measure = (scene.bodies.positions, scene.bodies.quaternions), Penetration(scene)
+    each = [measure.deepest(pair[None], *poses) for pair in touching]
+    asked = []
+    depth = _HullDepth.depth
+    monkeypatch.setattr(_HullDepth, "depth", lambda self, *told: asked.append(told[:2]) or depth(self, *told))
+    assert measure.deepest(touching, *poses) == max(each) > 0.0
+    assert 0 < len(asked) < len(touching) / 2
+    asked.clear()
+    assert measure.deepest(touching, *poses, known=1.0) == 1.0
+    assert not asked

@@ -15,7 +15,7 @@ from harness.scene.box import Box
 from harness.scene.launch import directions, orientations
 from harness.scene.scene import Scene
 from harness.vocabulary import MethodName
-from tests.conftest import cube_mesh, make_bodies
+from tests.conftest import cube_mesh, make_bodies, slow_beyond
 
 COUNT = 120
 FIRST = np.arange(0, COUNT, 3)  # of two groups, mixed in their numbers
@@ -102,7 +102,7 @@ def test_two_groups_of_hulls_that_ignore_each_other_fly_as_if_alone(least, respo
     require_same(hits(both.events), hits(one.events, FIRST) + hits(other.events, SECOND))
 
 
-@pytest.mark.parametrize("shape", ["sphere", "hull", pytest.param("mesh", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("shape", slow_beyond(["hull", "sphere", "mesh"]))
 def test_predictive_sees_the_hits_of_frames_and_no_ignored_pair(shape):
     (bodies, box), law = crowd(40, sizes=(0.6, 1.0)), MotionLaw(1.0, 4e-3, "none")
     meshes = () if shape == "sphere" else (cube_mesh(),)

@@ -45,6 +45,7 @@ def test_short_frames_see_the_events_in_the_order_of_the_schedule(gas, response)
     assert np.abs(lateness).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_the_lateness_of_frames_is_of_first_order_in_their_length(gas):
     exact = predicted(gas, "elastic").trace.times[:8]
     lateness = [np.mean(np.abs(stepped(gas, "elastic", dt).trace.times[:8] - exact)) for dt in (4e-3, 1e-3, 2.5e-4)]

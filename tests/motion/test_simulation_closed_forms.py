@@ -158,6 +158,7 @@ def test_speed_does_not_tunnel():
     assert hit["time"] == pytest.approx((900 - sqrt(1 - 0.09)) / 1e6, rel=1e-15)
 
 
+@pytest.mark.slow
 def test_no_hit_is_missed_from_a_hundred_million_diameters():
     """Aimed at the target but for 1e-7 of its radius, from 1e8 diameters; direction and offset are exact in binary."""
     rng = np.random.default_rng(1)

@@ -51,6 +51,7 @@ def test_a_thousand_spheres_press_and_collide_as_theory_says(packing):
     assert counters["stalled_events"] == 0
 
 
+@pytest.mark.slow
 def test_energy_stays_over_a_million_collisions():
     simulation = fluid(1000, 0.3, melt=1)
     before = simulation.kinetic_energy

@@ -16,7 +16,7 @@ from harness.scene.box import Box
 from harness.scene.hull import convex_hull
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from tests.conftest import cube_mesh, make_bodies
+from tests.conftest import cube_mesh, make_bodies, slow_beyond
 from tests.methods import flights
 from tests.methods.flights import frames_of, planned
 from tests.motion.solid_reference import SolidReference
@@ -150,7 +150,8 @@ def test_fine_icospheres_fly_as_spheres_do():
     assert max(latest) / min(latest) < 4
 
 
-@pytest.mark.parametrize("shape", ["hull", pytest.param("mesh", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
 def test_the_lateness_of_frames_is_of_first_order_in_their_length(shape):
     scene = crowd(mesh_named(PUMPKIN), 6, 1.2, 2, shape)
     first = 10
@@ -166,7 +167,8 @@ def test_the_lateness_of_frames_is_of_first_order_in_their_length(shape):
     assert ((orders > 0.5) & (orders < 1.5)).all()
 
 
-@pytest.mark.parametrize(("name", "shape"), [pytest.param("cube", "hull", marks=pytest.mark.slow), (PUMPKIN, "mesh")])
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "shape"), [("cube", "hull"), (PUMPKIN, "mesh")])
 def test_without_a_response_every_onset_is_found_and_no_other(name, shape):
     mesh, dt, until = cube_mesh() if name == "cube" else mesh_named(name), 1e-3, 2.5
     scene = crowd(mesh, 8, 1.4, 3, shape)
@@ -210,7 +212,7 @@ def test_bodies_in_another_order_meet_as_before():
 
 
 @pytest.mark.parametrize("shape", ["hull", "mesh"])
-@pytest.mark.parametrize("response", ["reflect", "elastic", "none"])
+@pytest.mark.parametrize("response", slow_beyond(["reflect", "elastic", "none"]))
 def test_ten_bodies_that_cannot_fit_into_their_box_come_to_an_end(shape, response):
     rng = np.random.default_rng(259)
     bodies = make_bodies(

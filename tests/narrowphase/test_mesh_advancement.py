@@ -16,6 +16,7 @@ from harness.narrowphase.support import support_map
 from harness.narrowphase.tree_pairs import NO_NODES, Trees
 from harness.narrowphase.triangle_tree import triangle_tree
 from harness.narrowphase.verdicts import SearchVerdict
+from tests.conftest import examples
 from tests.narrowphase.flights import STRAIGHT, Truth, body, encounter, shape_named
 from tests.narrowphase.meshes import MESHES, mesh_named, turns
 
@@ -102,7 +103,7 @@ def test_nothing_touches_before_an_impact_and_at_it_the_gap_is_within_tolerance(
             assert truth.touch(0.0) or truth.distance(0.0) <= 1.01e-7
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.integers(0, 10**6), st.sampled_from(MESHES))
 def test_surfaces_meet_no_earlier_than_their_hulls(seed, name):
     a, b = encounter(seed, 3.0, apart=(1.0, 1.5))

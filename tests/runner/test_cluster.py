@@ -179,6 +179,7 @@ def test_a_cluster_that_is_not_there_is_a_sentence(small, capsys, monkeypatch, w
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_without_the_extra_the_command_to_install_it_is_said(small, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert main(["sweep", "small.yaml", "--jobs", "2"]) == 2

@@ -43,6 +43,7 @@ def test_only_corners_are_left_of_a_finely_divided_cube():
     assert volume(hull.vertices, hull.faces) == pytest.approx(1)
 
 
+@pytest.mark.slow
 def test_all_vertices_of_an_icosphere_are_on_its_hull():
     sphere = trimesh.creation.icosphere(4)
     hull = convex_hull(sphere.vertices)

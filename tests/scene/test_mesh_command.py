@@ -34,7 +34,7 @@ def test_made_pumpkins_go_to_meshes_and_are_not_overwritten_unasked(capsys):
         ("make icosphere --faces 100", "not 100"),
         ("make cube --faces 14", "12 faces"),
         ("make cube --out cube.stl", "written as .ply"),
-        ("inspect none.obj", "none.obj: there is no such mesh file"),
+        pytest.param("inspect none.obj", "none.obj: there is no such mesh file", marks=pytest.mark.slow),
         pytest.param(
             "simplify none.obj --faces 10 --out a.ply", "none.obj: there is no such mesh file", marks=pytest.mark.slow
         ),

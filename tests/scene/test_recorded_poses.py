@@ -248,6 +248,7 @@ def test_what_has_no_use_with_poses_is_refused(text, said, capsys):
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_box_is_not_needed_and_the_plan_has_no_walls(capsys):
     np.savez("poses.npz", **poses())
     Path("x.yaml").write_text("title: t\nscene: {shape: sphere, count: 3}\nmotion: {poses: poses.npz}\n")

@@ -64,6 +64,11 @@ def test_a_bracket_around_the_closed_form_is_proven_and_one_beside_it_is_refused
     assert reason(first, second, *around(time)) == ""
     assert "not proven apart" in reason(first, second, *around(time + 1e-6))
     assert "not proven to touch" in reason(first, second, *around(time - 1e-6))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("first", "second", "time"), CLOSED_FORMS)
+def test_that_they_never_touch_is_refused(first, second, time):
     assert "not proven apart" in reason(first, second, 10.0, inf)
 
 
@@ -110,6 +115,7 @@ def test_the_turn_in_integers_is_that_of_doubles_to_within_what_is_allowed_for()
         assert np.abs(turned(in_doubles, point)[:, 0] - exactly).max() < allowed
 
 
+@pytest.mark.slow
 def test_every_triangle_is_inside_of_the_parts_above_it_and_in_one_leaf():
     mesh = harness.Body("icosphere-1280.ply").mesh
     parts = surface_parts(mesh.vertices, mesh.faces)
