@@ -149,7 +149,8 @@ _positive.__name__ = "number"  # argparse names it: "invalid number value"
 def _address(text: str) -> str:
     kind, _, rest = text.partition(":")
     if kind == "local":
-        _positive(rest)
+        if not (rest.isdecimal() and int(rest)):
+            raise argparse.ArgumentTypeError(f"{text}: must be local:N, with a number N of 1 or more")
     elif "://" not in text:
         raise argparse.ArgumentTypeError(f"{text}: must be tcp://HOST:PORT or local:N")
     return text

@@ -20,7 +20,7 @@ from harness.report.stability.case import is_case
 from harness.report.weight import weight
 from harness.store.records import VerdictRow
 
-_MOST_FINDINGS = 8
+_MOST_FINDINGS = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,7 @@ class Overview:
 
     @cached_property
     def weightiest(self) -> list[Card]:
-        """The experiments whose findings weigh most, eight at most; those that are only maps are shown as maps."""
+        """The experiments whose findings weigh most, five at most; those that are only maps are shown as maps."""
         shown = {made.page.record.name for made in self.maps}
         found = [card for card in self.cards if card.page.findings.sentences and card.page.record.name not in shown]
         return sorted(found, key=lambda card: weight(card.page), reverse=True)[:_MOST_FINDINGS]

@@ -56,7 +56,10 @@ def read_set(folder: Path) -> TruthSet:
     try:
         with path.open(encoding="utf-8", newline="") as stream:
             rows = list(csv.reader(stream))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except OSError as error:
+        why = f"the cases cannot be read: {error.strerror}; `harness truth make` writes such a folder"
+        raise InputError([Problem(why, str(path))]) from None
+    except (UnicodeDecodeError, csv.Error) as error:
         raise InputError([Problem(f"the cases cannot be read: {error}", str(path))]) from None
     if not rows or tuple(rows[0]) != COLUMNS:
         raise InputError([Problem(f"the first line must name the columns {', '.join(COLUMNS)}", str(path), 1)])

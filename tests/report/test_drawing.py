@@ -1,8 +1,9 @@
 """Figures as SVG."""
 
 import re
-from itertools import pairwise
+from itertools import combinations, pairwise
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,6 +11,8 @@ from hypothesis import strategies as st
 from harness.report.drawing import palette
 from harness.report.drawing.exponents import Slope, draw_exponents
 from harness.report.drawing.panels import Line, Panel, draw_panels
+from harness.report.styles import style_of
+from harness.vocabulary import ALGORITHMS, MethodName
 
 
 def panel(lines, **changes):
@@ -70,3 +73,38 @@ def test_a_lone_point_a_constant_and_an_exact_slope_can_be_drawn():
 
 def test_series_are_told_apart_by_colour_or_marker_up_to_24():
     assert len({(palette.colour(style), palette.marker(style)) for style in range(24)}) == 24
+
+
+# What linear red, green and blue become to those who lack one kind of cone: Machado, Oliveira and Fernandes, 2009.
+BLIND = {
+    "nobody": np.eye(3),
+    "deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+    "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+    "tritanopia": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+}
+
+
+def lab(colour, matrix):
+    """A colour as it is seen, in CIELAB (D65)."""
+    values = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)]) / 255
+    linear = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    seen = np.clip(np.asarray(matrix) @ linear, 0, 1)
+    white = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]) / [
+        [0.9505],
+        [1.0],
+        [1.089],
+    ]
+    x, y, z = np.cbrt(white @ seen)
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+@pytest.mark.parametrize("colours", [palette.LIGHT, palette.DARK])
+@pytest.mark.parametrize("matrix", BLIND.values(), ids=list(BLIND))
+def test_colours_are_told_apart_by_the_colour_blind(colours, matrix):
+    seen = [lab(colour, matrix) for colour in colours]
+    assert min(np.linalg.norm(one - other) for one, other in combinations(seen, 2)) > 25  # a just noticeable one is 2.3
+
+
+def test_pipelines_that_are_mostly_compared_have_six_colours():
+    names = [*(f"fcl/{name}" for name, word in ALGORITHMS.items() if word.own), "pybullet"]
+    assert len({palette.colour(style_of(MethodName.read(name, "hull"))) for name in names}) == len(names) == 6

@@ -71,8 +71,8 @@ def test_every_experiment_has_a_page_and_the_overview_links_it(database, pages):
 def test_the_overview_shows_few_findings_and_says_where_the_others_are(tmp_path):
     many = [Invented(f"x{place}", f"X{place}", {"count": [10, 40, 160]}, {}) for place in range(12)]
     overview = dict(render(write(tmp_path / "x.db", many)))["index.html"]
-    assert overview.split('id="findings"')[1].split("</ul>")[0].count("<li>") == 8
-    assert "4 more stand under their" in overview
+    assert overview.split('id="findings"')[1].split("</ul>")[0].count("<li>") == 5
+    assert "7 more stand under their" in overview
 
 
 @pytest.mark.slow

@@ -18,9 +18,10 @@ LISTS_PACKING = 0.40
 LISTS_COUNT = 64
 # Skin of the lists, in mean diameters.
 SKIN = 0.65
-# From this many spheres on, what the next events need is prefetched: 1.4 times the rate at 10^5, a loss while all is in
-# the cache; and from the last number on the event queue and the neighbours of partners too: once more 1.1 to 1.4 times.
-PREFETCH_COUNT = {NeighbourSearch.CELLS: 20_000, NeighbourSearch.LISTS: 4_000}
+# From this many spheres on, all that the next events need is prefetched, not the records of their spheres alone: 1.4
+# times the rate at 10^5, but .8 times while the cells are in the cache; and from the last number on the event queue and
+# the neighbours of partners too: once more 1.1 to 1.4 times.
+PREFETCH_COUNT = {NeighbourSearch.CELLS: 25_000, NeighbourSearch.LISTS: 4_000}
 CROWDED_COUNT = 30_000
 # Inelastic bodies can collapse: they hit each other without end in a finite time, three on a line for restitutions
 # below 7 - 4 sqrt 3 = .072 (McNamara & Young 1992). Three models are in use. `none` lets it happen, and never gets past

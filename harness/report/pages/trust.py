@@ -10,7 +10,7 @@ from harness.report.page import Content, Page
 from harness.report.quantity import number, plural
 from harness.report.results import Results
 from harness.report.table import Column, Entry, Table, plain, words
-from harness.report.trust.rates import NOISE, Rate, stored
+from harness.report.trust.rates import MORE, NOISE, Rate, stored
 
 FILE = "trust.html"
 
@@ -24,7 +24,7 @@ def _content(results: Results) -> Content | None:
         "tables": [_table(kind, list(found)) for kind, found in groupby(rates, key=lambda rate: rate.kind)],
         "noise": NOISE,
         "fewest": FEWEST_FOR_INTERVAL,
-        "rate": f"{100 * FALSE_RATE:g} %",
+        "rate": f"{100 * FALSE_RATE:g}\u00a0%",
     }
     return Content("trust.html.j2", values, results.records)
 
@@ -44,22 +44,24 @@ def _family(results: Results) -> str:
 
 
 def _table(kind: str, rates: list[Rate]) -> Table:
+    much = all(rate.wanted == MORE for rate in rates)
     rows = tuple(
         (
             words(rate.what),
             Entry(f"{number(100 * rate.share)} %", sort=plain(rate.share)),
-            Entry(f"{number(100 * rate.most)} %", sort=plain(rate.most)),
+            Entry(f"{number(100 * bound)} %", sort=plain(bound)),
             Entry(f"{number(rate.times)} of {number(rate.trials)}", sort=plain(rate.trials)),
             words(rate.wanted),
         )
-        for rate in rates
+        for rate, bound in ((rate, rate.least if much else rate.most) for rate in rates)
     )
     columns = (
-        Column("How often", numeric=False), Column("rate"), Column("at most"), Column("counted"),
-        Column("should be", numeric=False),
+        Column("How often", numeric=False), Column("rate"), Column("at least" if much else "at most"),
+        Column("counted"), Column("should be", numeric=False),
     )  # fmt: skip
-    note = "“At most” is the largest rate that such a count allows, with 95 % confidence."
+    way, size = ("least", "smallest") if much else ("most", "largest")
+    note = f"“At {way}” is the {size} rate that such a count allows, with 95 % confidence."
     return Table(kind, note, columns, rows)
 
 
-PAGE = Page(FILE, "How far to trust", 50, _content)
+PAGE = Page(FILE, "Trust", 50, _content)

@@ -36,7 +36,7 @@ def _on_gaps(query: str, cells: Sequence[Mapping[str, Any]]) -> list[str]:
                 f"size at the most ({worst['family']})."
             )
     right = [engine for engine in engines if not any(cell["beyond"] for cell in cells if cell["engine"] == engine)]
-    return [*said, f"Never off by more than their tolerance: {', '.join(right)}."] if right else said
+    return [*said, f"Off by no more than their tolerance in any of them: {', '.join(right)}."] if right else said
 
 
 def _on_collisions(cells: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -56,5 +56,5 @@ def _on_collisions(cells: Sequence[Mapping[str, Any]]) -> list[str]:
             )
     right = sorted({cell["engine"] for cell in cells} - {cell["engine"] for cell in cells if cell["beyond"]})
     if right:
-        said.append(f"Never wrong beyond their tolerance: {', '.join(right)}.")
+        said.append(f"Wrong about none of these poses beyond their tolerance: {', '.join(right)}.")
     return said

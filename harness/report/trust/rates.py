@@ -22,6 +22,8 @@ from harness.store.snapshot import Snapshot
 FILE = Path(__file__).with_name("rates.json")
 NOISE = MachineNoise()
 _XS = (10, 20, 40, 80)
+MORE = "the more the better"
+"""The rate that is wanted of what is to be found."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,15 @@ class Rate:
         # of Clopper and Pearson
         return float(special.betaincinv(self.times + 1, self.trials - self.times, 0.95))
 
+    @property
+    def least(self) -> float:
+        """The smallest rate that such a result allows, with 95 % confidence.
+
+        >>> round(Rate("", "", "", 200, 200).least, 3)
+        0.985
+        """
+        return float(special.betaincinv(self.times, self.trials - self.times + 1, 0.05)) if self.times else 0.0
+
 
 # What was simulated: yields (times, trials) one trial after another, the same ones for the same seed.
 Simulation = Callable[[np.random.Generator], Iterator[tuple[int, int]]]
@@ -82,7 +93,7 @@ class Simulated:
 
 def simulated() -> list[Simulated]:
     """Every line of the table."""
-    ahead, found, few, more = "Who is ahead", "What is found", "under 5 %", "the more the better"
+    ahead, found, few, more = "Who is ahead", "What is found", "under 5 %", MORE
     exponents, sweeps = "Exponents", "Differences of sweeps"
     lines = [
         (ahead, "a report of 60 experiments of equal methods names a winner", few, 100, _equal_report),
