@@ -12,7 +12,7 @@ from harness.report.table import Column, Entry, Table, plain, words
 def agreement(compared: Comparisons) -> Table:
     """Backend against backend: how their verdicts compare, over all experiments and shapes."""
     names = sorted({name for tally in compared.pairs for name in tally["backends"]})
-    columns = (Column("", numeric=False), *(Column(name, numeric=False) for name in names))
+    columns = (Column("backend", numeric=False), *(Column(name, numeric=False) for name in names))
     rows = []
     for name in names:
         rows.append((words(name), *(_meeting(compared, name, other) for other in names)))

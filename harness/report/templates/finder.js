@@ -25,7 +25,7 @@ document.querySelectorAll("form.finder").forEach(function (form) {
     var text = function (column) { return best.cells[column].textContent; };
     line("p", text(0)).className = "method";
     line("p", [text(4), text(5), text(6)].filter(Boolean).join("; ") + ".");
-    line("pre", text(7));
+    line("pre", text(7)).tabIndex = 0;  // it scrolls where the page is narrow
     var exact = +best.dataset.x === x && +best.dataset.y === y;
     line("p", (exact ? "Measured there: " : "Nearest measured point, nothing in between is guessed: ") + text(1) + ", " + text(2) + ".").className = "note";
   };
