@@ -23,19 +23,11 @@ UNITS = "the smallest size is about 32, by a power of two"
 # smaller by 1e-2 of their size, and of hulls with tiny edges it misses overlaps of 1e-7; with the smallest body 32
 # units across, the error is that of the coordinates, for spheres and triangles as before.
 _SMALLEST = 32.0
-MOST_UNLIKE, MISSED_BY_UNLIKE = 256.0, 1e-4
-"""Of hulls whose sizes differ more times than the first, FCL now and then misses an overlap of two edges, in whatever
-units and order it is told of them: measured to 2e-5 of the larger one, less than the second."""
 
 
 def fcl_unit(sizes: Floats) -> float:
     """The length that FCL is told of as 1, m, for bodies of these sizes, m."""
     return unit_of_smallest(sizes) / _SMALLEST
-
-
-def size_ratio(sizes: Floats) -> float:
-    """How many times the largest size is the smallest; 1 without bodies."""
-    return float(sizes.max() / sizes.min()) if len(sizes) else 1.0
 
 
 class FclObjects:

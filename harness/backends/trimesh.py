@@ -10,7 +10,7 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from harness.arrays import Floats, Pairs
-from harness.backends.fcl_objects import MISSED_BY_UNLIKE, MOST_UNLIKE, UNITS, fcl_unit, size_ratio
+from harness.backends.fcl_objects import UNITS, fcl_unit
 from harness.backends.poses import close_pairs, near_pairs, near_radii, require_finite, rotations
 from harness.backends.protocol import NearPairs
 from harness.errors import InputError
@@ -33,18 +33,14 @@ class Trimesh:
     units = UNITS
     precision = "double"
     solid: tuple[Shape, ...] = ("mesh",)
-    _size_ratio = 1.0
 
     def tolerance(self, shape: Shape) -> float:
         """FCL's own, since that is what it asks: the rare worst case for hulls, rounding for meshes."""
-        if shape == "hull" and self._size_ratio > MOST_UNLIKE:
-            return MISSED_BY_UNLIKE
         return {"hull": 1e-11, "mesh": 1e-14}.get(shape, 0.0)
 
     def load(self, scene: Scene) -> None:
         """Raises InputError for a hull that trimesh does not take for convex: it would hold its surface only."""
         self._unit = fcl_unit(scene.bodies.sizes)
-        self._size_ratio = size_ratio(scene.bodies.sizes)
         self._radii = scene.enclosing_radii
         self._manager = CollisionManager()
         self._single: list[CollisionManager] = []

@@ -44,7 +44,7 @@ def save_atlas(found: Surveyed, files: Mapping[int, Path], folder: Path) -> None
 
 
 def _accusations(found: Surveyed, files: Mapping[int, Path]) -> Iterator[dict[str, Any]]:
-    """Of whether bodies touch; what depends on what was asked before is no accusation that anybody could check."""
+    """Of whether bodies touch; what no scene of its own shows is no accusation that anybody could check."""
     for cell, case in found.case_of.items():
         seen, small = found.atlas.cells[cell], found.rows[case].small
         if seen.query == "collision" and small is not None:

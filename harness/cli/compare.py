@@ -134,7 +134,8 @@ def run(arguments: argparse.Namespace) -> int:
     for row in ordered:
         if row.tried and row.small is None:
             case = row.case
-            progress(f"{case.wrong}, {case.pose.name}, call {case.query_index}: it depends on what was asked before")
+            seen = f"{case.wrong}, {case.pose.name}, call {case.query_index}"
+            progress(f"{seen}: asked afresh, it was not found again; it may depend on what was asked before")
     _keep(keep, arguments.db)
     return 0 if whole.passed else 1
 

@@ -25,7 +25,7 @@ class Reduced:
 
     Parameters
     ----------
-    small : the smallest scene that shows it; None where it depends on what was asked before
+    small : the smallest scene that shows it; None where no scene of its own shows it
     meshes : names of the files of the meshes
     tried : whether it was tried to make it smaller
     """

@@ -35,7 +35,7 @@ def minimise(case: Case, known: Case | None = None) -> Case | None:
     Returns
     -------
     Case or None
-        None if the scene does not show it when asked once: it then depends on what was asked before.
+        None if the scene does not show it when asked once: it may depend on what was asked before.
     """
     if known is not None and (same := _wrong_again(case, replace(known.scene, hulls={}))) is not None:
         return same

@@ -111,14 +111,6 @@ def test_small_hulls_among_large_ones_are_judged_to_rounding():
         assert touching("fcl", Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 40.0)))) == hits
 
 
-def test_the_tolerance_of_fcl_depends_on_how_unlike_the_hulls_are():
-    for ratio, tolerance in ((256.0, 1e-11), (2000.0, 1e-4)):
-        bodies = make_bodies([[0, 0, 0], [3 * ratio, 0, 0]], sizes=[1.0, ratio])
-        backend = load("fcl", Scene("hull", (cube_mesh(),), bodies, Box(np.full(3, 9.0 * ratio))))
-        assert backend.tolerance("hull") == tolerance
-        assert backend.tolerance("mesh") == 1e-14
-
-
 @pytest.mark.slow
 def test_hulls_with_tiny_edges_are_judged_to_the_declared_tolerance():
     mesh = mesh_named("package:pybullet_data/lego/lego_vhacd.obj")

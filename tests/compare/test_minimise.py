@@ -35,4 +35,4 @@ def test_a_defect_that_depends_on_order_is_reported_with_frame_and_question(defe
     (case,) = json.loads(said.out)["cases"]
     assert (case["wrong"], case["file"], case["depends_on_order"]) == ("drops", None, True)
     assert (case["certificate"]["pose"], case["certificate"]["call"]) == ("frame 999", 1000)
-    assert "frame 999, call 1000: it depends on what was asked before" in said.err
+    assert "frame 999, call 1000: asked afresh, it was not found again" in said.err

@@ -35,7 +35,7 @@ def sentences_of(row: Mapping[str, Any]) -> list[str]:
         f"{' against '.join(row['backends'])}; there the gap was {number(row['gap'])} m.",
     ]
     if row["minimised"] is None:
-        sentences.append("Asked once and afresh, the backend is right: it depends on what was asked before.")
+        sentences.append("Asked once and afresh, it was not found again: it may depend on what was asked before.")
     else:
         how = "in one frame" if "moment" in row else "at rest"
         sentences.append(f"{row['minimised_to']} bodies {how} show it by themselves.")
