@@ -42,7 +42,7 @@ class Reliable(io.TextIOWrapper):
     """
 
     def __init__(self, descriptor: int, like: TextIO, errors: str) -> None:
-        # under PYTHONUNBUFFERED a stream writes through, and not line by line; what lies below this one keeps lines back
+        # under PYTHONUNBUFFERED a stream writes through, and not line by line; what lies below this one keeps lines
         line_by_line = bool(like.line_buffering) or getattr(like, "write_through", False)
         super().__init__(
             os.fdopen(descriptor, "wb", closefd=False),
