@@ -42,12 +42,13 @@ class Reliable(io.TextIOWrapper):
     """
 
     def __init__(self, descriptor: int, like: TextIO, errors: str) -> None:
+        # under PYTHONUNBUFFERED a stream writes through, and not line by line; what lies below this one keeps lines
+        line_by_line = bool(like.line_buffering) or getattr(like, "write_through", False)
         super().__init__(
             os.fdopen(descriptor, "wb", closefd=False),
             encoding=like.encoding,
             errors=errors,
-            line_buffering=bool(like.line_buffering),
-            write_through=getattr(like, "write_through", False),
+            line_buffering=line_by_line,
         )
         self.lost: OSError | None = None
 

@@ -1,5 +1,6 @@
 """Whatever becomes of standard output and error, a command comes to its end, and says what was lost."""
 
+import io
 import os
 import subprocess
 import sys
@@ -46,6 +47,17 @@ def test_letters_that_the_terminal_does_not_know_are_written_as_numbers():
     assert os.read(reader, 100) == b"3 \\xd7 \\u2026\n"
     assert not speaks_unicode(stream)
     like.close()
+    os.close(reader)
+
+
+def test_every_line_is_out_at_once_where_python_is_told_not_to_buffer():
+    reader, writer = os.pipe()
+    unbuffered = io.TextIOWrapper(os.fdopen(os.dup(writer), "wb", 0), encoding="utf-8", write_through=True)
+    stream = Reliable(writer, unbuffered, errors="backslashreplace")
+    stream.write("3 of 90 runs\n")
+    os.set_blocking(reader, False)
+    assert os.read(reader, 100) == b"3 of 90 runs\n"
+    unbuffered.close()
     os.close(reader)
 
 
