@@ -25,7 +25,7 @@ def test_plain_fractions_prove_every_accusation():
 
 @pytest.mark.slow
 def test_a_certificate_that_is_changed_proves_nothing():
-    for row in ROWS:
+    for row in ROWS[::3]:
         changed = deepcopy(row)
         if row["touching"]:
             changed["bodies"][0]["position"][0] += 1.0

@@ -1,38 +1,41 @@
-"""rapier3d: separate hulls of which it says the opposite (at rest). Needs numpy and rapier3d alone."""
+"""coal: separate meshs of which it says the opposite (at rest). Needs numpy and coal alone."""
 
 import base64
 import zlib
 from fractions import Fraction
 
 import numpy as np
-from importlib.metadata import version
-import rapier3d
+import coal
 
 def unpacked(text, kind):
     return np.frombuffer(zlib.decompress(base64.b85decode(text)), kind).reshape(-1, 3).copy()
 
-
 # vertices in each body's own frame, triangles, positions, quaternions w x y z; lengths in units of 1 m
 A = np.array([[0.004999750018748438, 0.0, -0.49997500187484384], [0.002499875009374219, 0.0043299105098866236, -0.49997500187484384], [-0.002499875009374219, 0.0043299105098866236, -0.49997500187484384], [-0.004999750018748438, 0.0, -0.49997500187484384], [-0.002499875009374219, -0.0043299105098866236, -0.49997500187484384], [0.002499875009374219, -0.0043299105098866236, -0.49997500187484384], [0.004999750018748438, 0.0, 0.49997500187484384], [0.002499875009374219, 0.0043299105098866236, 0.49997500187484384], [-0.002499875009374219, 0.0043299105098866236, 0.49997500187484384], [-0.004999750018748438, 0.0, 0.49997500187484384], [-0.002499875009374219, -0.0043299105098866236, 0.49997500187484384], [0.002499875009374219, -0.0043299105098866236, 0.49997500187484384]], "<f8")
-FACES_A = unpacked("c-lpb2@1e42n4-qO#J_UD|AAI0U6zO5sBfz9$dcBVL{@0c;uhN1-{|n1aA=Z8$Q^T-%YmYUhGA0a&MfIxj%+0vI>TK0h%lUO8", "<i4")
+FACES_A = unpacked("c-k$E2?_u)2m{m0s{Q|eSJ^3qh6#+4G%8pB>)&9r;&f+gwkkmnwr0DM^ki#xDv$oy4)=_1Y{ENW7r*dMxZ@Yz1rPkfyWxrd1CUe!KL", "<i4")
 B = np.array([[0.004999750018748438, 0.0, -0.49997500187484384], [0.002499875009374219, 0.0043299105098866236, -0.49997500187484384], [-0.002499875009374219, 0.0043299105098866236, -0.49997500187484384], [-0.004999750018748438, 0.0, -0.49997500187484384], [-0.002499875009374219, -0.0043299105098866236, -0.49997500187484384], [0.002499875009374219, -0.0043299105098866236, -0.49997500187484384], [0.004999750018748438, 0.0, 0.49997500187484384], [0.002499875009374219, 0.0043299105098866236, 0.49997500187484384], [-0.002499875009374219, 0.0043299105098866236, 0.49997500187484384], [-0.004999750018748438, 0.0, 0.49997500187484384], [-0.002499875009374219, -0.0043299105098866236, 0.49997500187484384], [0.002499875009374219, -0.0043299105098866236, 0.49997500187484384]], "<f8")
-FACES_B = unpacked("c-lpb2@1e42n4-qO#J_UD|AAI0U6zO5sBfz9$dcBVL{@0c;uhN1-{|n1aA=Z8$Q^T-%YmYUhGA0a&MfIxj%+0vI>TK0h%lUO8", "<i4")
-P, Q = [0.0, 0.0, 0.0], [0.4900245018376531, 0.2100105007875656, 0.7100355026627219, -0.46002300172514377]
-R, S = [-0.6975, 0.599, -0.116], [-0.5881794611453361, 0.22929029841258872, -0.5383337440991213, 0.5582720309176074]
+FACES_B = unpacked("c-k$E2?_u)2m{m0s{Q|eSJ^3qh6#+4G%8pB>)&9r;&f+gwkkmnwr0DM^ki#xDv$oy4)=_1Y{ENW7r*dMxZ@Yz1rPkfyWxrd1CUe!KL", "<i4")
+P, Q = [0.0, 0.0, 0.0], [0.5786819020065177, 0.29689071488808555, -0.11669635037871195, -0.7505765260862143]
+R, S = [-0.001545, -0.0094, -0.003115423], [0.5786819020065177, 0.29689071488808555, -0.11669635037871195, -0.7505765260862143]
 
 
 def touching():
-    colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
-    middle = (np.array(P) + R) / 2  # single precision has few digits to lose
-    for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
-        shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
-        kinds = rapier3d.ActiveCollisionTypes.all()
-        collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
-        place = rapier3d.Vec3(*(place - middle))
-        colliders[colliders.insert(collider)].position = rapier3d.Isometry3(place, rapier3d.Rotation3(*quaternion))
-    rapier3d.CollisionPipeline().step(
-        0.0, rapier3d.IslandManager(), rapier3d.BroadPhaseBvh(), narrow, rapier3d.RigidBodySet(), colliders)
-    return any(touching for _, _, touching in narrow.intersection_pairs())
+    def body(vertices, faces, position, quaternion):
+        points, triangles = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+        for vertex in vertices:
+            points.append(vertex)
+        for face in faces.tolist():
+            triangles.append(coal.Triangle(*face))
+        shape = coal.BVHModelOBBRSS()
+        shape.beginModel(len(faces), len(vertices))
+        shape.addSubModel(points, triangles)
+        shape.endModel()
+        turned = coal.Quaternion(*quaternion).toRotationMatrix()
+        return coal.CollisionObject(shape, coal.Transform3s(turned, np.array(position)))
+
+    request = coal.CollisionRequest()
+    request.gjk_tolerance = 1e-12
+    return bool(coal.collide(body(A, FACES_A, P, Q), body(B, FACES_B, R, S), request, coal.CollisionResult()))
 
 
 def exact(points, position, quaternion):
@@ -48,10 +51,10 @@ def exact(points, position, quaternion):
 
 one, other = exact(A, P, Q), exact(B, R, S)
 # along this direction every point of the first lies farther than every point of the second
-normal = [Fraction(part) for part in [0.7973400388562228, -0.5050331597272595, 0.3304396616822162]]
+normal = [Fraction(part) for part in [0.25377585687297805, 0.8921571821702471, 0.37370225684417563]]
 along = [[sum(n * c for n, c in zip(normal, point)) for point in points] for points in (one, other)]
 assert min(along[0]) > max(along[1])
 said = touching()
-print("rapier3d", version('rapier3d'), "says", "they touch" if said else "they do not touch")
-print("exactly, they are 0.00172 apart, which is checked")
+print("coal", coal.__version__, "says", "they touch" if said else "they do not touch")
+print("exactly, they are 2.33e-05 apart, which is checked")
 print("reproduced" if said != False else "not reproduced: this version is right")

@@ -1,38 +1,38 @@
-"""rapier3d: separate hulls of which it says the opposite (at rest). Needs numpy and rapier3d alone."""
+"""mujoco: overlapping hulls of which it says the opposite (at rest). Needs numpy and mujoco alone."""
 
 import base64
 import zlib
 from fractions import Fraction
 
 import numpy as np
-from importlib.metadata import version
-import rapier3d
+import mujoco
 
 def unpacked(text, kind):
     return np.frombuffer(zlib.decompress(base64.b85decode(text)), kind).reshape(-1, 3).copy()
-
 
 # vertices in each body's own frame, triangles, positions, quaternions w x y z; lengths in units of 1 m
 A = np.array([[0.004999750018748438, 0.0, -0.49997500187484384], [0.002499875009374219, 0.0043299105098866236, -0.49997500187484384], [-0.002499875009374219, 0.0043299105098866236, -0.49997500187484384], [-0.004999750018748438, 0.0, -0.49997500187484384], [-0.002499875009374219, -0.0043299105098866236, -0.49997500187484384], [0.002499875009374219, -0.0043299105098866236, -0.49997500187484384], [0.004999750018748438, 0.0, 0.49997500187484384], [0.002499875009374219, 0.0043299105098866236, 0.49997500187484384], [-0.002499875009374219, 0.0043299105098866236, 0.49997500187484384], [-0.004999750018748438, 0.0, 0.49997500187484384], [-0.002499875009374219, -0.0043299105098866236, 0.49997500187484384], [0.002499875009374219, -0.0043299105098866236, 0.49997500187484384]], "<f8")
 FACES_A = unpacked("c-lpb2@1e42n4-qO#J_UD|AAI0U6zO5sBfz9$dcBVL{@0c;uhN1-{|n1aA=Z8$Q^T-%YmYUhGA0a&MfIxj%+0vI>TK0h%lUO8", "<i4")
 B = np.array([[0.002999850011249063, 0.0, -0.2999850011249063], [0.0014999250056245315, 0.002597946305931974, -0.2999850011249063], [-0.0014999250056245315, 0.002597946305931974, -0.2999850011249063], [-0.002999850011249063, 0.0, -0.2999850011249063], [-0.0014999250056245315, -0.002597946305931974, -0.2999850011249063], [0.0014999250056245315, -0.002597946305931974, -0.2999850011249063], [0.002999850011249063, 0.0, 0.2999850011249063], [0.0014999250056245315, 0.002597946305931974, 0.2999850011249063], [-0.0014999250056245315, 0.002597946305931974, 0.2999850011249063], [-0.002999850011249063, 0.0, 0.2999850011249063], [-0.0014999250056245315, -0.002597946305931974, 0.2999850011249063], [0.0014999250056245315, -0.002597946305931974, 0.2999850011249063]], "<f8")
 FACES_B = unpacked("c-lpb2@1e42n4-qO#J_UD|AAI0U6zO5sBfz9$dcBVL{@0c;uhN1-{|n1aA=Z8$Q^T-%YmYUhGA0a&MfIxj%+0vI>TK0h%lUO8", "<i4")
-P, Q = [0.0, 0.0, 0.0], [-0.19900743804199786, 0.5970223141259935, -0.49751859510499463, -0.5970223141259935]
-R, S = [0.005602, 0.0028, -0.0032], [-0.19900743804199786, 0.5970223141259935, -0.49751859510499463, -0.5970223141259935]
+P, Q = [0.0, 0.0, 0.0], [0.5954059302993213, 0.4011861858970667, 0.6930886407443918, 0.06457211844794512]
+R, S = [0.41255336049722946, -0.1856400727903849, -0.1293448237636592], [0.5954059302993213, 0.4011861858970667, 0.6930886407443918, 0.06457211844794512]
 
 
 def touching():
-    colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
-    middle = (np.array(P) + R) / 2  # single precision has few digits to lose
-    for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
-        shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
-        kinds = rapier3d.ActiveCollisionTypes.all()
-        collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
-        place = rapier3d.Vec3(*(place - middle))
-        colliders[colliders.insert(collider)].position = rapier3d.Isometry3(place, rapier3d.Rotation3(*quaternion))
-    rapier3d.CollisionPipeline().step(
-        0.0, rapier3d.IslandManager(), rapier3d.BroadPhaseBvh(), narrow, rapier3d.RigidBodySet(), colliders)
-    return any(touching for _, _, touching in narrow.intersection_pairs())
+    spec = mujoco.MjSpec()
+    spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-12, 200
+    for name, vertices in (("a", A), ("b", B)):
+        body = spec.worldbody.add_body()
+        body.add_freejoint()
+        spec.add_mesh(name=name, uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=1.0)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.qpos[:] = [*P, *Q, *R, *S]
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_collision(model, data)
+    return data.ncon > 0
 
 
 def exact(points, position, quaternion):
@@ -47,11 +47,14 @@ def exact(points, position, quaternion):
 
 
 one, other = exact(A, P, Q), exact(B, R, S)
-# along this direction every point of the first lies farther than every point of the second
-normal = [Fraction(part) for part in [-0.8316831683168318, -0.4257425742574256, 0.3564356435643564]]
-along = [[sum(n * c for n, c in zip(normal, point)) for point in points] for points in (one, other)]
-assert min(along[0]) > max(along[1])
+# the same point is a mean of vertices of both, with positive weights
+weights = [[0, '9116257111085190155057077447993036862143054932609711456335167547/27668935146660513278903212805512639042224692968605497247299911575'], [9, '684438778296381332515387322300278113496497517996911960252891641136647679152952623/1020752494536177658451727413236970193721883532231313616149286992236094033306394250'], [6, '7828198648428809560291719468015915960414481672423190276924121344080285177/1020752494536177658451727413236970193721883532231313616149286992236094033306394250'], [4, '1543952744159259485644308239289472/3072022476272962258167373865600543716109479875425']], [[0, '9116257111085190155057077447993036862143054932609711456335167547/27668935146660513278903212805512639042224692968605497247299911575'], [0, '684438778296381332515387322300278113496497517996911960252891641136647679152952623/1020752494536177658451727413236970193721883532231313616149286992236094033306394250'], [3, '7828198648428809560291719468015915960414481672423190276924121344080285177/1020752494536177658451727413236970193721883532231313616149286992236094033306394250'], [1, '1543952744159259485644308239289472/3072022476272962258167373865600543716109479875425']]
+assert all(Fraction(share) > 0 for side in weights for _, share in side)
+assert all(sum(Fraction(share) for _, share in side) == 1 for side in weights)
+mean = [[sum(Fraction(share) * points[k][axis] for k, share in side) for axis in range(3)]
+        for side, points in zip(weights, (one, other))]
+assert mean[0] == mean[1]
 said = touching()
-print("rapier3d", version('rapier3d'), "says", "they touch" if said else "they do not touch")
-print("exactly, they are 6.39e-05 apart, which is checked")
-print("reproduced" if said != False else "not reproduced: this version is right")
+print("mujoco", mujoco.__version__, "says", "they touch" if said else "they do not touch")
+print("exactly, they overlap by 0.00285, which is checked")
+print("reproduced" if said != True else "not reproduced: this version is right")

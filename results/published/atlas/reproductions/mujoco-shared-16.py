@@ -1,38 +1,38 @@
-"""rapier3d: separate hulls of which it says the opposite (at rest). Needs numpy and rapier3d alone."""
+"""mujoco: overlapping hulls of which it says the opposite (at rest). Needs numpy and mujoco alone."""
 
 import base64
 import zlib
 from fractions import Fraction
 
 import numpy as np
-from importlib.metadata import version
-import rapier3d
+import mujoco
 
 def unpacked(text, kind):
     return np.frombuffer(zlib.decompress(base64.b85decode(text)), kind).reshape(-1, 3).copy()
-
 
 # vertices in each body's own frame, triangles, positions, quaternions w x y z; lengths in units of 1 m
 A = np.array([[0.49999374954200887, 0.0, -0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [0.0, 0.49999374954200887, -0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [-0.49999374954200887, 0.0, -0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.0, -0.49999374954200887, -0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.49999374954200887, 0.0, 0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [0.0, 0.49999374954200887, 0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [-0.49999374954200887, 0.0, 0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, 0.0024999687477100445], [0.0, -0.49999374954200887, 0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, 0.0024999687477100445]], "<f8")
 FACES_A = unpacked("c-l>miw=Mw2t_H>lnDR-Z`19xV7uGl%0og#>QY;J;8;?)z=!;C;VHa(PimCB!Uc9z+2iT`hMoC)&OjY+vg?bE*YGEbbjxN#j@OxM?DbSLc@NmQOH+-~XZ-Vo2l)$mp8|6", "<i4")
 B = np.array([[0.49999374954200887, 0.0, -0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [0.0, 0.49999374954200887, -0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, -0.0024999687477100445], [-0.49999374954200887, 0.0, -0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.0, -0.49999374954200887, -0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, -0.0024999687477100445], [0.49999374954200887, 0.0, 0.0024999687477100445], [0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [0.0, 0.49999374954200887, 0.0024999687477100445], [-0.35354897125876383, 0.35354897125876383, 0.0024999687477100445], [-0.49999374954200887, 0.0, 0.0024999687477100445], [-0.35354897125876383, -0.35354897125876383, 0.0024999687477100445], [0.0, -0.49999374954200887, 0.0024999687477100445], [0.35354897125876383, -0.35354897125876383, 0.0024999687477100445]], "<f8")
 FACES_B = unpacked("c-l>miw=Mw2t_H>lnDR-Z`19xV7uGl%0og#>QY;J;8;?)z=!;C;VHa(PimCB!Uc9z+2iT`hMoC)&OjY+vg?bE*YGEbbjxN#j@OxM?DbSLc@NmQOH+-~XZ-Vo2l)$mp8|6", "<i4")
-P, Q = [0.0, 0.0, 0.0], [0.49700181513200875, -0.11240595818875694, 0.6630967533502674, -0.5483217960426986]
-R, S = [-0.582417, -0.3738, -0.6222], [-0.7453446108948109, -0.51359673187818, -0.11704993889438797, 0.40863078667537506]
+P, Q = [0.0, 0.0, 0.0], [-0.9582704815699089, 0.23438652670569798, 0.11796536760804047, 0.11342315590616392]
+R, S = [-0.33687558801656925, 0.513232289052946, -0.3508488831033969], [-0.9582704815699089, 0.23438652670569798, 0.11796536760804047, 0.11342315590616392]
 
 
 def touching():
-    colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
-    middle = (np.array(P) + R) / 2  # single precision has few digits to lose
-    for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
-        shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
-        kinds = rapier3d.ActiveCollisionTypes.all()
-        collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
-        place = rapier3d.Vec3(*(place - middle))
-        colliders[colliders.insert(collider)].position = rapier3d.Isometry3(place, rapier3d.Rotation3(*quaternion))
-    rapier3d.CollisionPipeline().step(
-        0.0, rapier3d.IslandManager(), rapier3d.BroadPhaseBvh(), narrow, rapier3d.RigidBodySet(), colliders)
-    return any(touching for _, _, touching in narrow.intersection_pairs())
+    spec = mujoco.MjSpec()
+    spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-12, 200
+    for name, vertices in (("a", A), ("b", B)):
+        body = spec.worldbody.add_body()
+        body.add_freejoint()
+        spec.add_mesh(name=name, uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=1.0)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.qpos[:] = [*P, *Q, *R, *S]
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_collision(model, data)
+    return data.ncon > 0
 
 
 def exact(points, position, quaternion):
@@ -47,11 +47,14 @@ def exact(points, position, quaternion):
 
 
 one, other = exact(A, P, Q), exact(B, R, S)
-# along this direction every point of the first lies farther than every point of the second
-normal = [Fraction(part) for part in [0.8232364235939166, -0.2804856937343928, 0.49356819840690097]]
-along = [[sum(n * c for n, c in zip(normal, point)) for point in points] for points in (one, other)]
-assert min(along[0]) > max(along[1])
+# the same point is a mean of vertices of both, with positive weights
+weights = [[0, '3988177438965380559454837759779195121185357992735118330575826487/13616488935519712635555535845948385578444958858621393865485112280'], [3, '1670266678572412798356539308049052608488117266863/2362113830268981596989386995277402595689331038120'], [5, '14357325202341193744259700278304044928914538536071/3025886430115491696790119076877419017432213079693643081218913840'], [1, '14297173903400969852155104267351137163940512535417/3025886430115491696790119076877419017432213079693643081218913840']], [[0, '3988177438965380559454837759779195121185357992735118330575826487/13616488935519712635555535845948385578444958858621393865485112280'], [7, '1670266678572412798356539308049052608488117266863/2362113830268981596989386995277402595689331038120'], [9, '14357325202341193744259700278304044928914538536071/3025886430115491696790119076877419017432213079693643081218913840'], [13, '14297173903400969852155104267351137163940512535417/3025886430115491696790119076877419017432213079693643081218913840']]
+assert all(Fraction(share) > 0 for side in weights for _, share in side)
+assert all(sum(Fraction(share) for _, share in side) == 1 for side in weights)
+mean = [[sum(Fraction(share) * points[k][axis] for k, share in side) for axis in range(3)]
+        for side, points in zip(weights, (one, other))]
+assert mean[0] == mean[1]
 said = touching()
-print("rapier3d", version('rapier3d'), "says", "they touch" if said else "they do not touch")
-print("exactly, they are 1.9e-05 apart, which is checked")
-print("reproduced" if said != False else "not reproduced: this version is right")
+print("mujoco", mujoco.__version__, "says", "they touch" if said else "they do not touch")
+print("exactly, they overlap by 0.005, which is checked")
+print("reproduced" if said != True else "not reproduced: this version is right")
