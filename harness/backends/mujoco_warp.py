@@ -20,7 +20,7 @@ from harness.scene.scene import Scene
 from harness.vocabulary import Query, Shape
 
 _DEVICE = "cpu"
-# Of each body, room for contacts to begin with: a pair of hulls may have eight.
+# Room for contacts and close pairs to begin with, of each body and in all; it grows where there are more.
 _CONTACTS_A_BODY, _CONTACTS = 16, 64
 _ITERATIONS = 200
 
@@ -63,9 +63,11 @@ class MuJoCoWarp(MuJoCo):
                 mujoco_warp.kinematics(self._kernels, self._state)
                 mujoco_warp.collision(self._kernels, self._state)
                 count = int(self._state.nacon.numpy()[0])
-                if count <= self._room:
+                # of close pairs that there is no room for, no contact is looked for
+                needed = max(count, int(self._state.ncollision.numpy()[0]))
+                if needed <= self._room:
                     break
-                self._make_room(2 * count)
+                self._make_room(2 * needed)
         touching = np.sort(self._state.contact.geom.numpy()[:count], axis=1)  # a geom a body, in order
         return np.unique(touching, axis=0).astype(np.int64).reshape(-1, 2)
 

@@ -21,8 +21,8 @@ class Judgement:
     Parameters
     ----------
     touching : closed sets, so that a gap of exactly 0 touches
-    gap : m, between the surfaces; negative if they overlap, by the penetration depth. Of overlapping meshes,
-        which are surfaces, at least as deep
+    gap : m, between the surfaces; negative if they overlap, by the penetration depth, of hulls known to three tenths
+        at least. Of overlapping meshes, which are surfaces, at least as deep
     certificate : the proof; numbers that only a fraction can hold are text
     contained : a mesh lies wholly inside the other, and the surfaces do not touch
     """

@@ -74,9 +74,9 @@ _COAL_MESH = """    shape = coal.BVHModelOBBRSS()
     shape.beginModel(len(faces), len(vertices))
     shape.addSubModel(points, triangles)
     shape.endModel()"""
-_MUJOCO = """
+_MUJOCO_MODEL = """
 spec = mujoco.MjSpec()
-spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-12, 200
+{options}
 for name, vertices in (("a", A), ("b", B)):
     body = spec.worldbody.add_body()
     body.add_freejoint()
@@ -85,27 +85,25 @@ for name, vertices in (("a", A), ("b", B)):
 model = spec.compile()
 data = mujoco.MjData(model)
 data.qpos[:] = [*P, *Q, *R, *S]
+"""
+_MUJOCO = (
+    _MUJOCO_MODEL.format(options="spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-12, 200")
+    + """\
 mujoco.mj_kinematics(model, data)
 mujoco.mj_collision(model, data)
 return data.ncon > 0
 """
-_MUJOCO_WARP = """
-spec = mujoco.MjSpec()
-spec.option.ccd_iterations = 200
-for name, vertices in (("a", A), ("b", B)):
-    body = spec.worldbody.add_body()
-    body.add_freejoint()
-    spec.add_mesh(name=name, uservert=vertices.ravel(), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX)
-    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, mass=1.0)
-model = spec.compile()
-data = mujoco.MjData(model)
-data.qpos[:] = [*P, *Q, *R, *S]
+)
+_MUJOCO_WARP = (
+    _MUJOCO_MODEL.format(options="spec.option.ccd_iterations = 200")
+    + """\
 with warp.ScopedDevice("cpu"):
     kernels, state = mujoco_warp.put_model(model), mujoco_warp.put_data(model, data, nconmax=64, njmax=1)
     mujoco_warp.kinematics(kernels, state)
     mujoco_warp.collision(kernels, state)
     return bool(state.nacon.numpy()[0] > 0)
 """
+)
 _PYBULLET = """
 pybullet.connect(pybullet.DIRECT)
 bodies = []

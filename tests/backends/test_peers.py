@@ -46,6 +46,13 @@ def test_a_peer_finds_the_pairs_that_fcl_finds(peer, shape):
         assert touching(peer(), scene) == touching(registry.create("fcl"), scene)
 
 
+@pytest.mark.parametrize("shape", ["sphere", "hull"])
+def test_a_peer_has_room_for_a_crowd_in_which_all_bodies_touch(peer, shape):
+    if shape not in peer.shapes:
+        pytest.skip("it has no such shape")
+    assert len(touching(peer(), random_scene(shape, 60, 1.2, 0))) == 60 * 59 // 2
+
+
 @pytest.mark.parametrize("shape", ["sphere", "hull", "mesh"])
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e5])
 def test_a_peer_keeps_to_the_band_it_states(peer, shape, size):
