@@ -45,6 +45,9 @@ STEPS = 100_000
 # Of the time for which the last crossing lasted: the next one is to last as long, if one can be found. With .5, or with
 # a search from higher up, following a contact takes longer.
 LESS = 0.3
+# Of that: where the next one lasts no longer, it is sought around more triangles, for more steps; from
+# the roots that takes three times as long.
+MUCH_LESS, LEVELS_WIDER, WIDER_STEPS = 1.0, 3, 300
 # Where the bodies are held by their gap alone, after how many instants the whole surfaces are searched for a crossing.
 SEARCH_EVERY = 8
 
@@ -207,25 +210,26 @@ def hold_of_surfaces(
     for _ in range(LEVELS_UP):
         start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
     found = longest_crossing(trees, seen, start, last.enough, NEARBY_STEPS, stack)
+    if not found.lasts > MUCH_LESS * last.enough and last.instants == 0:
+        for _ in range(LEVELS_WIDER):
+            start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
+        wider = longest_crossing(trees, seen, start, last.enough, WIDER_STEPS, stack)
+        found = wider if wider.lasts > found.lasts or found.leaves.a < 0 else found
     points, gap, leaves = NO_WITNESSES, 0.0, found.leaves
     if leaves.a < 0:
         points, leaves = nearest_points(trees, pose, last.leaves, margin), last.leaves
         gap = points.gap
-    # a crossing anywhere else may last longer; while the gap alone holds them, there mostly is none
-    held = gap <= near and not found.lasts > 0.0
-    if (
-        (held and last.instants % SEARCH_EVERY == SEARCH_EVERY - 1)
-        or (gap > near and last.instants == 0)
-        or 0.0 < found.lasts < last.enough
-    ):
-        other = longest_crossing(trees, seen, ROOTS, last.enough, STEPS, stack)
-        if other.lasts > found.lasts or (gap > 0.0 and other.leaves.a >= 0):
-            found, gap, leaves = other, 0.0, other.leaves
-    if gap > near:
+    if gap > near:  # a search for any triangles that are near is a search for any that cross as well
         gap, leaves = triangles_within(trees, pose, near, margin, stack)
         if gap > near:
             return Hold(0.0, 0.0, near - gap), last
+        found = longest_crossing(trees, seen, leaves, 0.0, NEARBY_STEPS, stack)
         points = nearest_points(trees, pose, leaves, margin)
+    # a crossing anywhere else may last longer; while the gap alone holds them, there mostly is none
+    if not found.lasts > 0.0 and last.instants % SEARCH_EVERY == SEARCH_EVERY - 1:
+        other = longest_crossing(trees, seen, ROOTS, last.enough, STEPS, stack)
+        if other.leaves.a >= 0:
+            found, gap, leaves = other, 0.0, other.leaves
     if found.lasts > 0.0:
         return Hold(found.lasts, 0.0, near), LastCrossing(leaves, LESS * found.lasts, 0, stack)
     lasts = nearness_lasts(points, seen, near)

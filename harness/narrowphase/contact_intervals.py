@@ -18,6 +18,7 @@ from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.gjk import COLD_START
 from harness.narrowphase.mesh_advancement import MESH_COLD_START, MeshShape, time_of_mesh_impact
 from harness.narrowphase.support import SupportMap
+from harness.narrowphase.tree_pairs import ROOTS, NodePair
 from harness.narrowphase.verdicts import SearchVerdict
 
 # Searches for the next contact of surfaces that are taken up again where they were given up.
@@ -38,10 +39,11 @@ class Contacts(NamedTuple):
 
 
 class Onset(NamedTuple):
-    """When the next contact begins: verdict and time as of an `Impact`."""
+    """When the next contact begins, and between which triangles, if they are surfaces; else as of an `Impact`."""
 
     verdict: SearchVerdict
     time: float
+    leaves: NodePair
 
 
 @kernel
@@ -113,7 +115,7 @@ def next_hull_contact(
 ) -> Onset:
     """When two hulls touch, at the beginning of a window or later; parameters as for `hull_contacts`."""
     found = time_of_impact(hull_a, hull_b, a, b, begin, end, tolerance, COLD_START)
-    return Onset(found.verdict, found.time)
+    return Onset(found.verdict, found.time, ROOTS)
 
 
 @inner
@@ -128,7 +130,8 @@ def next_mesh_contact(
             break
         begin = found.time
         found = time_of_mesh_impact(shape_a, shape_b, a, b, begin, end, tolerance, MESH_COLD_START)
-    return Onset(found.verdict, found.time)
+    leaves = found.warm_start.leaves
+    return Onset(found.verdict, found.time, leaves if leaves.a >= 0 else ROOTS)
 
 
 @kernel

@@ -264,7 +264,7 @@ def next_hull_contact(
 ) -> Onset:
     """When two hulls touch, at the beginning of a window or later."""
     found = near_impact(hull_a, hull_b, a, b, begin, end, tolerance)
-    return Onset(found.verdict, found.time)
+    return Onset(found.verdict, found.time, ROOTS)
 
 
 @inner
@@ -320,13 +320,13 @@ def solids_in_piece(
                     continue
                 return Followed(state, count, False)
             until = piece.straight if onset.verdict == SearchVerdict.NEVER else onset.time
-            state = PairState(False, until, begins, ROOTS, 0.0, 0)
+            state = PairState(False, until, begins, onset.leaves, 0.0, 0)
             continue
         if state.until == parted:  # what touches again at once has not been seen to part
             return Followed(PairState(True, state.until, False, ROOTS, 0.0, 0), count, False)
         if not (piece.settled and state.until == 0.0):
             count = noted(found, count, k, piece.begin + state.until)
-        state = PairState(True, state.until, False, ROOTS, 0.0, 0)
+        state = PairState(True, state.until, False, state.leaves, 0.0, 0)
     return Followed(state, count, True)
 
 

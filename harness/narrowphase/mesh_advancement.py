@@ -20,8 +20,8 @@ import numpy as np
 from harness.kernel import kernel, strict_step
 from harness.narrowphase.advancement import time_of_impact
 from harness.narrowphase.clearance_field import ClearanceField, clearance_field, no_field
-from harness.narrowphase.free_flight import Motion, place, seen_at
-from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart
+from harness.narrowphase.free_flight import Motion, fastest_passing, place, relative_motion, seen_at
+from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hull_distance
 from harness.narrowphase.motion_bounds import (
     Flight,
     Instant,
@@ -55,6 +55,10 @@ HULL_TOLERANCE = 1e-3
 # By how much points may turn faster than the centres approach before hulls are brought nearer than that: the search of
 # the surfaces takes as many steps a turn, however slowly they approach.
 SLOW = 1000.0
+
+
+# Spells in which hulls overlap, and how far ahead their end is looked for: a way, of the mean size, that is doubled.
+MOST_SPELLS, FIRST_LOOK, MOST_LOOKS = 4, 0.05, 7
 
 
 class MeshShape(NamedTuple):
@@ -183,18 +187,65 @@ def time_of_mesh_impact(
         never = max(never, hulls.time)  # which is inf if they never do
         after = MeshWarmStart(hulls.warm_start, start.leaves)
         return MeshImpact(SearchVerdict.NEVER, never, 0.0, hulls.axis, after, hulls.steps)
-    trees = Trees(shape_a.tree, shape_b.tree)
-    if hulls.gap > 0.0:
-        found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, hulls.axis)
-    else:
-        found = FirstTouch(SearchVerdict.STALLED, hulls.time, 0.0, hulls.axis, NO_NODES, 0)
-    if found.verdict == SearchVerdict.STALLED:
-        steps = found.steps
-        found = first_touch(trees, a, b, found.time, rest, tolerance, start.leaves)
-        found = FirstTouch(found.verdict, found.time, found.gap, found.axis, found.leaves, steps + found.steps)
+    trees, steps = Trees(shape_a.tree, shape_b.tree), hulls.steps
+    found = FirstTouch(SearchVerdict.STALLED, hulls.time, 0.0, hulls.axis, NO_NODES, 0)
+    for spell in range(MOST_SPELLS):
+        if hulls.gap > 0.0:
+            found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, hulls.axis)
+            steps += found.steps
+            if found.verdict != SearchVerdict.STALLED:
+                break
+            now = found.time
+        else:
+            now = hulls.time
+        until = rest
+        if spell + 1 < MOST_SPELLS:
+            until = apart_again(shape_a.hull, shape_b.hull, a, b, now, rest, coarse, hulls.warm_start)
+        found = first_touch(trees, a, b, now, until, tolerance, start.leaves)
+        steps += found.steps
+        if found.verdict != SearchVerdict.NEVER or not until < rest:
+            break
+        hulls = time_of_impact(shape_a.hull, shape_b.hull, a, b, until, rest, coarse, hulls.warm_start)
+        steps += hulls.steps
+        if hulls.verdict == SearchVerdict.NEVER:
+            never = max(never, hulls.time)
+            break
     time = never if found.verdict == SearchVerdict.NEVER else min(end, begin + (entry + found.time))
     after = MeshWarmStart(hulls.warm_start, found.leaves)
-    return MeshImpact(found.verdict, time, found.gap, found.axis, after, hulls.steps + found.steps)
+    return MeshImpact(found.verdict, time, found.gap, found.axis, after, steps)
+
+
+@kernel
+def apart_again(
+    hull_a: SupportMap,
+    hull_b: SupportMap,
+    a: Motion,
+    b: Motion,
+    begin: float,
+    end: float,
+    gap: float,
+    start: WarmStart,
+) -> float:
+    """A time (s) at which two hulls are apart by a gap (m), so that what is in them can be searched up to it; the end,
+    if none is found.
+
+    It is looked for ever farther on: bodies that have just parted are in each other's hollows for a moment, and a
+    search through their trees up to when their spheres part takes a fifth more steps.
+    """
+    speed, margin = fastest_passing(a, b), MARGIN * (a.size + b.size)
+    if not speed > 0.0:
+        return end
+    wait = FIRST_LOOK * 0.5 * (a.size + b.size) / speed
+    for _ in range(MOST_LOOKS):
+        if not begin + wait < end:
+            break
+        pose = relative_motion(a, b, begin + wait).pose
+        found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf, 0.0)
+        if found.lower > gap:
+            return begin + wait
+        start = found.warm_start
+        wait *= 2.0
+    return end
 
 
 @kernel

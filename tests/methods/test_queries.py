@@ -147,6 +147,43 @@ def test_bodies_that_touch_at_the_start_have_not_begun_to():
         assert found.metrics["pair_hits"] == 0
 
 
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+@pytest.mark.parametrize("where", ["beside", "over", "along a diagonal"])
+def test_cubes_whose_faces_slide_over_each_other_meet_once_each_way_at_the_exact_time(shape, where):
+    # coplanar faces neither cross nor come apart: what follows a contact has nothing but the gap, which stays 0
+    edge = 1.0 / np.sqrt(3.0)
+    room = 2.5 - 0.5  # of the centre of a cube, from the middle of the box
+    across = {"beside": (edge, 0.0), "over": (0.25 * edge, edge), "along a diagonal": (edge, edge)}[where]
+    scene = two_cubes(shape, (-1.5, *across), (1.0, 0.0, 0.0), side=5.0)
+    found = asked(scene, "impact", law=MotionLaw(7.0, 0.5, "none"))
+    times = [time for _, time in hits_of(found.trace)]
+    expected = np.array([1.5 - edge, (1.5 + room) + (room - edge)])
+    assert len(times) == 2
+    assert np.all(times <= expected + 1e-14)  # never late
+    assert np.all(times >= expected - 1e-9)  # early by no more than the tolerance of 1e-9 at 1 m/s
+
+
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+def test_cubes_that_rest_or_slide_on_each_other_from_the_start_have_not_begun_to(shape):
+    edge = 1.0 / np.sqrt(3.0)
+    for velocity in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.1, 0.0, -0.2)):
+        scene = two_cubes(shape, (0.2 * edge, edge, 0.1 * edge), velocity, side=20.0)
+        assert not hits_of(asked(scene, "impact", law=MotionLaw(1.0, 0.25, "none")).trace)
+
+
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+def test_cubes_that_slide_past_each_other_a_millionth_apart_do_not_meet(shape):
+    edge = 1.0 / np.sqrt(3.0)
+    scene = two_cubes(shape, (-1.5, edge + 1e-6, 0.1), (1.0, 0.0, 0.0), side=20.0)
+    assert not hits_of(asked(scene, "impact", law=MotionLaw(3.0, 0.5, "none")).trace)
+
+
+def two_cubes(shape, position, velocity, side):
+    """Cubes of space diagonal 1 in a box, of which the second rests in its middle."""
+    bodies = make_bodies([position, [0.0, 0.0, 0.0]], velocities=[velocity, [0.0, 0.0, 0.0]])
+    return Scene(shape, (cube_mesh(),), bodies, random_scene("sphere", 2, side).box)
+
+
 @pytest.mark.parametrize("query", ["tolerance", "distance", "impact"])
 def test_bodies_at_rest_are_asked_about_once(query):
     still = make_bodies([[-0.55, 0.0, 0.0], [0.55, 0.0, 0.0]])

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.narrowphase.contact_end import end_of_mesh_contact
+from harness.narrowphase.contact_end import MOST_CREEPING, end_of_hull_contact, end_of_mesh_contact
 from harness.narrowphase.contact_intervals import hull_contacts, mesh_contacts
 from harness.narrowphase.free_flight import orientation, place
 from harness.narrowphase.gjk import COLD_START, MARGIN, hull_distance, relative_pose
@@ -146,3 +146,15 @@ def test_a_contact_is_followed_where_the_first_crossing_that_is_found_is_over_at
     ended = end_of_mesh_contact(shape, shape, a, b, 0.0, 0.5, 1e-10)
     assert ended.verdict != SearchVerdict.STALLED
     assert ended.steps < 500
+
+
+def test_faces_that_slide_over_each_other_are_followed_for_a_bounded_number_of_steps():
+    # nothing but their gap, which stays 0, shows that they touch, and it proves no more than a step at a time
+    shape, a, b = shape_named("cube"), body(), body((0.1, WIDTH, 0.05), (0.2, 0.0, 0.0))
+    for ended in (
+        end_of_hull_contact(shape.hull, shape.hull, a, b, 0.0, 9.0, 1e-9),
+        end_of_mesh_contact(shape, shape, a, b, 0.0, 9.0, 1e-9),
+    ):
+        assert ended.verdict == SearchVerdict.STALLED
+        assert ended.steps <= MOST_CREEPING
+        assert 0.0 < ended.time < 5.0 * WIDTH - 0.5  # when they come apart
