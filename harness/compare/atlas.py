@@ -14,6 +14,7 @@ import numpy as np
 from scipy.special import betaincinv
 
 from harness.compare.budget import Budget
+from harness.compare.certificate import Certificate
 from harness.compare.comparison import MOST_FAILURES
 from harness.compare.families import family_poses, resting_poses
 from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError, preload
@@ -77,6 +78,30 @@ class Cell:
         return 1e6 * wrong / self.verdicts, 1e6 * float(low), 1e6 * float(high)
 
 
+@dataclass(frozen=True, eq=False)
+class WrongGap:
+    """An answer about a gap that is off by more than the engine declares.
+
+    Parameters
+    ----------
+    scene, pose : where; the hulls of the scene are those that the engine was judged on
+    told : m; of "tolerance" 0 for near; inf for bodies that it does not report
+    within : m, up to which bodies are near
+    gap : m, what is true
+    certificate : of the gap
+    off, allowed : m, by how much the answer is wrong, and what the engine's tolerance excuses
+    """
+
+    scene: Scene
+    pose: Pose
+    told: float
+    within: float
+    gap: float
+    certificate: Certificate
+    off: float
+    allowed: float
+
+
 @dataclass
 class Atlas:
     """What was found of every engine.
@@ -85,12 +110,14 @@ class Atlas:
     ----------
     cells : in the order in which they were asked
     cases : of each cell that has one, the farthest wrong verdict beyond the declared tolerance, by place in `cells`
+    gaps : of each cell about gaps that has one, the answer that is farthest off beyond the declared tolerance
     failures : poses at which an engine crashed, hung or raised
     unsupported : what could not be asked, and why
     """
 
     cells: list[Cell] = field(default_factory=list)
     cases: dict[int, Case] = field(default_factory=dict)
+    gaps: dict[int, WrongGap] = field(default_factory=dict)
     failures: list[Failure] = field(default_factory=list)
     unsupported: list[str] = field(default_factory=list)
 
@@ -99,6 +126,7 @@ class Atlas:
         before = len(self.cells)
         self.cells += other.cells
         self.cases |= {before + place: case for place, case in other.cases.items()}
+        self.gaps |= {before + place: wrong for place, wrong in other.gaps.items()}
         self.failures += other.failures
         self.unsupported += [line for line in other.unsupported if line not in self.unsupported]
 
