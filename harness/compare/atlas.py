@@ -213,6 +213,7 @@ class Survey:
                 held = {name: replace(pose_set.scene, hulls=one.facts.hulls) for name, one in asked.items()}
                 whole = pose_set.poses(pose_set.scene)
                 poses = {name: pose_set.poses(held[name]) if one.facts.hulls else whole for name, one in asked.items()}
+                answered: list[int] = []
                 for place in range(0, len(whole), self.budget.every):
                     if self.budget.spent:
                         self.budget.left_out.append(
@@ -221,11 +222,12 @@ class Survey:
                         )
                         break
                     self.ask_at(place, asked, held, poses)
+                    answered.append(place)
                 for name, one in asked.items():
-                    # of the first ones: they were all answered, so that nothing is left to be set up
+                    # of the first that were asked: they were all answered, so that none hangs or has to be set up
                     if name not in self._places or self.failures_of(name):
                         continue
-                    if (seconds := self.timed(one, poses[name][:_TIMED])) is not None:
+                    if (seconds := self.timed(one, [poses[name][place] for place in answered[:_TIMED]])) is not None:
                         self._seconds.setdefault(name, []).append(seconds)
         for name, measured in self._seconds.items():
             self.cell(name).seconds = float(np.median(measured))
