@@ -166,16 +166,18 @@ def survey(
             else:
                 make_ready(MethodName.read(name, shape, made.query))
     for family in families:
-        what = f"{made.query}, {family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
+        what = f"{made.query}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:
-            budget.left_out.append(f"{what}: not asked, {budget.why}")
+            budget.leave_out(what, family, f"not asked, {budget.why}")
             continue
-        progress(f"{what}: {count} poses")
+        progress(f"{what}, {family}: {count} poses")
         if family == "resting" and recorded is not None:
             sets = resting_poses(recorded, count)
         else:
             sets = family_poses(family, shape, (mesh,) if mesh else (), count)
-        made(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
+        asked, given = made(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
+        if asked < given:
+            budget.leave_out(what, family, f"{given - asked} of {given} poses not asked, {budget.why}")
     return atlas
 
 
@@ -204,9 +206,17 @@ class Survey:
         self._places: dict[str, int] = {}
         self._seconds: dict[str, list[float]] = {}
 
-    def ask(self, pose_sets: Iterable[PoseSet]) -> None:
-        """Every engine about every pose."""
+    def ask(self, pose_sets: Iterable[PoseSet]) -> tuple[int, int]:
+        """Every engine about every pose, until the time is spent; how many poses that was, and how many there are.
+
+        Poses between those that a budget of one in several asks about count as asked.
+        """
+        given = through = 0
         for pose_set in pose_sets:
+            over = self.budget.spent
+            if over:
+                given += len(pose_set.poses(pose_set.scene))
+                continue
             with ExitStack() as processes:
                 asked = self._loaded(pose_set.scene, processes)
                 # an engine that rounds its hulls is asked about poses of those, and judged by them
@@ -216,13 +226,12 @@ class Survey:
                 answered: list[int] = []
                 for place in range(0, len(whole), self.budget.every):
                     if self.budget.spent:
-                        self.budget.left_out.append(
-                            f"{self.family}, {self.shape}: {len(whole) - place} of {len(whole)} poses not asked, "
-                            f"{self.budget.why}"
-                        )
                         break
                     self.ask_at(place, asked, held, poses)
                     answered.append(place)
+                else:
+                    place = len(whole)
+                given, through = given + len(whole), through + place
                 for name, one in asked.items():
                     # of the first that were asked: they were all answered, so that none hangs or has to be set up
                     if name not in self._places or self.failures_of(name):
@@ -231,6 +240,7 @@ class Survey:
                         self._seconds.setdefault(name, []).append(seconds)
         for name, measured in self._seconds.items():
             self.cell(name).seconds = float(np.median(measured))
+        return through, given
 
     def timed(self, one: Isolated, poses: Sequence[Pose]) -> float | None:
         """CPU time of a query, s."""
