@@ -55,6 +55,15 @@ def test_at_least_five_reproductions_of_several_libraries_need_no_more_than_sixt
         assert "harness" not in text
 
 
+def test_fcls_wrong_distance_of_two_cubes_is_shown_without_this_program():
+    script = PUBLISHED.parent / "gaps/reproductions/fcl-shared-hull.py"
+    assert script.read_text().count("\n") <= LONGEST
+    ended = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr  # it has proven the truth
+    if version("python-fcl") == "0.7.0.11":
+        assert ended.stdout.rstrip().endswith("\nreproduced")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("row", SHOWN, ids=[row["file"].rpartition("/")[2] for row in SHOWN])
 def test_a_reproduction_shows_the_error_in_the_version_that_it_is_told_of(row):
