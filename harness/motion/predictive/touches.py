@@ -180,8 +180,8 @@ def _touch_first(
 
 
 # Solve for when sphere k touches `count` candidates, at most LANES, which stand in their list from the place `start`
-# on, after the time `now`. The times go into the lanes, with the earliest, and whether any two may be the same. Returns the
-# lane of the earliest.
+# on, after the time `now`. The times go into the lanes, with the earliest, and whether any two may be the same.
+# Returns the lane of the earliest.
 touch_first = cast(
     Callable[[Record, Records, int, Indices, int, int, float], int],
     instruction(_touch_first),
