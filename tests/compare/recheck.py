@@ -11,6 +11,7 @@ import json
 import sys
 from fractions import Fraction
 from itertools import product
+from math import lcm
 from pathlib import Path
 
 PUBLISHED = Path(__file__).parents[2] / "results/published/atlas/accusations.json"
@@ -32,13 +33,19 @@ def world(body):
     ]  # fmt: skip
 
 
+def as_integers(*sides):
+    """Points in units so small that all are whole: what is asked of them asks for no unit, and integers are quicker."""
+    unit = lcm(*(part.denominator for points in sides for point in points for part in point))
+    return [[[int(part * unit) for part in point] for point in points] for points in sides]
+
+
 def proven(row):
     """Whether the certificate of a row proves what it says of touching."""
     proof, bodies = row["certificate"], row["bodies"]
     if row["shape"] == "sphere":
         squared = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(*(b["position"] for b in bodies), strict=True))
         return (squared <= (sum(Fraction(body["size"]) for body in bodies) / 2) ** 2) == row["touching"]
-    one, other = map(world, bodies)
+    one, other = as_integers(*map(world, bodies))
     if row["touching"]:
         return have_common_point(proof, bodies, one, other)
     if row["shape"] == "hull":
