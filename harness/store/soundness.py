@@ -49,6 +49,12 @@ _ELEMENTS: dict[tuple[str, str, str], tuple[str, ...]] = {
     ("point", "plan", "$.stages"): ("object",),
     ("point", "plan", "$.warnings"): ("text",),
 }
+# And what each of the objects of a list says.
+_KEYS = {
+    ("experiment", "specification", "$.expect"): "metric",
+    ("experiment", "specification", "$.claims"): "metric",
+    ("point", "plan", "$.stages"): "kept",
+}
 _NUMBERS = {"run": "repeat", "control": "repeat"}
 
 
@@ -83,6 +89,13 @@ def _damages(connection: sqlite3.Connection, tables: str) -> Iterator[str]:
             connection, f"{table}, json_each({table}.{column}, '{place}') AS one", f"one.type NOT IN ({_listed(types)})"
         ):
             yield f"{table}.{column} has a value of another kind{'' if place == '$' else f' in {place[2:]}'}"
+    for (table, column, place), key in _KEYS.items():
+        if _any(
+            connection,
+            f"{table}, json_each({table}.{column}, '{place}') AS one",
+            f"json_type(one.value, '$.{key}') IS NULL",
+        ):
+            yield f"{table}.{column} has no {key} in {place[2:]}"
     found = "json_type(document, '$.pairs') IS NOT 'array' AND json_type(document, '$.truth') IS NOT 'object'"
     if _any(connection, "comparison", found):
         yield "comparison.document tells neither of pairs of backends nor of cases"
