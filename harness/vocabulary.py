@@ -38,14 +38,14 @@ Status = Literal["ok", "failed", "timeout", "memory", "crashed", "rejected"]
 
 FAMILIES = {
     "random": "any orientation, centres from 0.3 of what parts the bounding spheres to beyond it",
-    "aligned": "offset along a vertex, an edge or a face direction, and 1e-9 to 1e-3 rad off it",
-    "grazing": "first contact of two features, 1e-15 to 1e-2 of a size apart or overlapping",
+    "aligned": "offset along a vertex, an edge or a face direction, and 10⁻⁹ to 10⁻³ rad off it",
+    "grazing": "first contact of two features, 10⁻¹⁵ to 10⁻² of a size apart or overlapping",
     "deep": "centres nearer than 0.3 of what parts the bounding spheres",
     "contained": "one body within the other",
     "shared": "a vertex, an edge or the plane of a face in common, or all of the body",
-    "sizes": "first contact of bodies whose sizes differ 10 to 10^4 times",
-    "far": "first contact at coordinates of 10^3 and 10^6 sizes",
-    "units": "random poses and first contacts of bodies of 1e-4 m and 1e4 m",
+    "sizes": "first contact of bodies whose sizes differ 10 to 10⁴ times",
+    "far": "first contact at coordinates of 10³ and 10⁶ sizes",
+    "units": "random poses and first contacts of bodies of 10⁻⁴ m and 10⁴ m",
     "resting": "bodies that rest on each other, as the experiment's recorded poses (`motion.poses`) have them",
 }
 """Families of poses of two bodies, in which backends go wrong in different ways."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 from pydrake.common import MemoryFile
 from pydrake.geometry import (
@@ -87,7 +89,7 @@ class Drake:
         for frame, turn, place in zip(self._frames, turns, places, strict=True):
             poses.set_value(frame, RigidTransform(RotationMatrix(turn), place))
         self._graph.get_source_pose_port(self._source).FixValue(self._context, poses)
-        return self._graph.get_query_output_port().Eval(self._context)
+        return cast(QueryObject, self._graph.get_query_output_port().Eval(self._context))
 
 
 def _shape(scene: Scene, shared: Solid, unit: float) -> Sphere | Convex:

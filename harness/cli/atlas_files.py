@@ -7,12 +7,15 @@ import io
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from math import isinf
 from pathlib import Path
 from typing import Any
 
 from harness.cli.surveying import Surveyed, cell_row
-from harness.compare.atlas import Cell
+from harness.compare.atlas import Cell, WrongGap
 from harness.compare.outcome import Case
+from harness.compare.poses import Pose
+from harness.scene.scene import Scene
 from harness.whole_file import write_whole
 
 CELLS, ACCUSATIONS = "cells.csv", "accusations.json"
@@ -25,7 +28,8 @@ def save_atlas(found: Surveyed, files: Mapping[int, Path], folder: Path) -> None
 
     An accusation has both bodies as the engine was judged on them, so that the proof can be checked without this
     program: vertices in their own frame, m, triangles of a mesh, position, m, quaternion, all doubles, and the
-    certificate.
+    certificate. One about a gap has what was asked and told, by how much that is off, and what the engine's tolerance
+    excuses, m; what was not reported is told as nothing.
 
     Parameters
     ----------
@@ -50,6 +54,10 @@ def _accusations(found: Surveyed, files: Mapping[int, Path]) -> Iterator[dict[st
         if seen.query == "collision" and small is not None:
             named = {"engine": seen.engine, "family": seen.family, "shape": seen.shape, "mesh": seen.mesh}
             yield named | _proven(small) | {"file": _shown_by(files.get(case))}
+    for cell, wrong in found.atlas.gaps.items():
+        seen = found.atlas.cells[cell]
+        named = {"engine": seen.engine, "family": seen.family, "shape": seen.shape, "mesh": seen.mesh}
+        yield named | {"query": seen.query} | _proven_gap(wrong)
 
 
 def _shown_by(experiment: Path | None) -> str:
@@ -66,26 +74,33 @@ def _proven(case: Case) -> dict[str, Any]:
         "touching": truth.touching,
         "gap": truth.gap,
         "certificate": truth.certificate,
-        "bodies": [
-            {
-                "size": float(scene.bodies.sizes[body]),
-                "position": pose.positions[body].tolist(),
-                "quaternion": pose.quaternions[body].tolist(),
-            }
-            | _solid(case, body)
-            for body in case.bodies
-        ],
+        "bodies": [_body(scene, pose, body) for body in case.bodies],
     }
 
 
-def _solid(case: Case, body: int) -> dict[str, Any]:
-    if case.scene.shape == "sphere":
-        return {"vertices": [], "faces": []}
-    solid = case.scene.solid_of_body(body)
+def _proven_gap(wrong: WrongGap) -> dict[str, Any]:
     return {
-        "vertices": solid.vertices.tolist(),
-        "faces": solid.faces.tolist() if case.scene.shape == "mesh" else [],
+        "within": wrong.within,
+        "told": None if isinf(wrong.told) else wrong.told,
+        "gap": wrong.gap,
+        "off": wrong.off,
+        "allowed": wrong.allowed,
+        "certificate": wrong.certificate,
+        "bodies": [_body(wrong.scene, wrong.pose, body) for body in (0, 1)],
     }
+
+
+def _body(scene: Scene, pose: Pose, body: int) -> dict[str, Any]:
+    placed = {
+        "size": float(scene.bodies.sizes[body]),
+        "position": pose.positions[body].tolist(),
+        "quaternion": pose.quaternions[body].tolist(),
+    }
+    if scene.shape == "sphere":
+        return placed | {"vertices": [], "faces": []}
+    solid = scene.solid_of_body(body)
+    faces = solid.faces.tolist() if scene.shape == "mesh" else []
+    return placed | {"vertices": solid.vertices.tolist(), "faces": faces}
 
 
 def _short(value: object) -> object:

@@ -92,7 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
     known: Known = {}
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
-        budget.left_out.append(f"of the poses of each scene one in {budget.every} was asked about")
+        budget.leave_out(f"of the poses of each scene one in {budget.every} was asked about")
     atlases: list[Surveyed] = []
     for experiment in experiments:
         if experiment.measure.families:

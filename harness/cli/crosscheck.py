@@ -175,14 +175,14 @@ def cross_check(
             free = None
         if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
             if budget.spent:
-                budget.left_out.append(f"{pair[0]} and {pair[1]} in flight: not run, the time was spent")
+                budget.leave_out(f"{pair[0]} and {pair[1]} in flight: not run, the time was spent")
                 yield pair, found
                 continue
             motion = free.motion
             frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
             if budget.every > 1:
                 frames = max(1, frames // budget.every)
-                budget.left_out.append(f"{pair[0]} and {pair[1]} in flight: no more than {frames} frames are flown")
+                budget.leave_out(f"{pair[0]} and {pair[1]} in flight: no more than {frames} frames are flown")
             progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
             found.add(
                 run_both(

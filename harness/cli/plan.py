@@ -32,16 +32,23 @@ def run(arguments: argparse.Namespace) -> int:
 
     overrides = overrides_of(arguments)
     planned = kept_facts("plan", Path(arguments.path), overrides) or _planned(arguments.path, overrides)
+    passed_over = [f"points passed over: {why}" for why in planned.get("lacking", ())]
     if arguments.json:
         json.dump({"runs": planned["runs"]}, sys.stdout, allow_nan=False)
         print()
+        for line in passed_over:
+            print(line, file=sys.stderr)
         return 0
     _show(planned)
+    for line in passed_over:
+        say(line)
     return 0
 
 
 def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
     """The title of an experiment, its leaves that vary, and its runs with their plans; they are kept.
+
+    Points whose backend is an extra that is not installed are passed over, as in a sweep; `lacking` says why.
 
     Raises
     ------
@@ -52,6 +59,7 @@ def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
     from pathlib import Path
 
     from harness.backends.registry import ours
+    from harness.backends.statement import missing
     from harness.experiment.kept_facts import keep_facts
     from harness.runner.point import plan_of
     from harness.runner.preparation import prepare
@@ -61,8 +69,11 @@ def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
 
     experiments, meshes = prepare([path], overrides)
     experiment = experiments[0]
+    backends = dict.fromkeys(point.engine.backend for point in experiment.points)
+    lacking = {name: why for name in backends if (why := missing(name)) is not None}
+    points = [point for point in experiment.points if point.engine.backend not in lacking]
     runs: list[dict[str, Any]] = []
-    for point in experiment.points:
+    for point in points:
         try:
             scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)
         except (SceneSizeError, PlacementError) as error:
@@ -71,7 +82,7 @@ def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
         plan = plan_of(point, scene)
         stages = [asdict(stage) for stage in plan.stages]
         runs.append({"parameters": point.parameters, "stages": stages, "warnings": list(plan.warnings)})
-    planned = {"title": experiment.title, "swept": list(experiment.swept), "runs": runs}
+    planned = {"title": experiment.title, "swept": list(experiment.swept), "runs": runs, "lacking": [*lacking.values()]}
     strangers = {point.engine.backend for point in experiment.points if not ours(point.engine.backend)}
     if experiment.path == Path(path) and len(runs) <= _MOST_KEPT and not strangers:
         of_file = experiment.source, experiment.mesh_paths, experiment.poses_paths

@@ -18,7 +18,7 @@ from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.cli.crosscheck import Meshes
 from harness.compare.atlas import JUDGE, Atlas, Cell, Survey, survey
-from harness.compare.budget import Budget
+from harness.compare.budget import Budget, LeftOut, told_once
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.gap_atlas import SURVEYS
 from harness.compare.outcome import Comparison
@@ -108,7 +108,7 @@ class _Part:
 
     atlas: Atlas
     rows: list[Reduced]
-    left_out: list[str]
+    left: list[LeftOut]
 
 
 def surveyed(
@@ -149,15 +149,18 @@ def surveyed(
     def begin(place: int) -> None:
         progress(f"{tasks[place][0]}: {measure.family_poses} poses")
 
-    left_out = list(budget.left_out)
+    left = list(budget.left)
     parts = dict(_done([task for _, task in tasks], workers, begin))
     atlas, rows = Atlas(), list[Reduced]()
     for place in range(len(tasks)):
         atlas.add(parts[place].atlas)
         rows += parts[place].rows
-        left_out += parts[place].left_out
+        left += parts[place].left
     found = Comparison(
-        cases=[row.case for row in rows], failures=atlas.failures, unsupported=atlas.unsupported, left_out=left_out
+        cases=[row.case for row in rows],
+        failures=atlas.failures,
+        unsupported=atlas.unsupported,
+        left_out=told_once(left),
     )
     scripts = {
         place: text
@@ -190,12 +193,12 @@ def _part(
     recorded: Scene | None,
     file_of: Mapping[str, str],
 ) -> _Part:
-    before = len(budget.left_out)
+    before = len(budget.left)
     atlas = survey(shape, mesh, (family,), count, names, budget, made=made, recorded=recorded)
     cases = list(atlas.cases.values())
     with budget.paused():
         rows = reduced(Comparison(cases=cases), file_of, len(cases))
-    return _Part(atlas, rows, budget.left_out[before:])
+    return _Part(atlas, rows, budget.left[before:])
 
 
 def survey_key(experiment: Experiment, meshes: Meshes, name: str) -> str:

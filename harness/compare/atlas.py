@@ -14,6 +14,7 @@ import numpy as np
 from scipy.special import betaincinv
 
 from harness.compare.budget import Budget
+from harness.compare.certificate import Certificate
 from harness.compare.comparison import MOST_FAILURES
 from harness.compare.families import family_poses, resting_poses
 from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError, preload
@@ -77,6 +78,30 @@ class Cell:
         return 1e6 * wrong / self.verdicts, 1e6 * float(low), 1e6 * float(high)
 
 
+@dataclass(frozen=True, eq=False)
+class WrongGap:
+    """An answer about a gap that is off by more than the engine declares.
+
+    Parameters
+    ----------
+    scene, pose : where; the hulls of the scene are those that the engine was judged on
+    told : m; of "tolerance" 0 for near; inf for bodies that it does not report
+    within : m, up to which bodies are near
+    gap : m, what is true
+    certificate : of the gap
+    off, allowed : m, by how much the answer is wrong, and what the engine's tolerance excuses
+    """
+
+    scene: Scene
+    pose: Pose
+    told: float
+    within: float
+    gap: float
+    certificate: Certificate
+    off: float
+    allowed: float
+
+
 @dataclass
 class Atlas:
     """What was found of every engine.
@@ -85,12 +110,14 @@ class Atlas:
     ----------
     cells : in the order in which they were asked
     cases : of each cell that has one, the farthest wrong verdict beyond the declared tolerance, by place in `cells`
+    gaps : of each cell about gaps that has one, the answer that is farthest off beyond the declared tolerance
     failures : poses at which an engine crashed, hung or raised
     unsupported : what could not be asked, and why
     """
 
     cells: list[Cell] = field(default_factory=list)
     cases: dict[int, Case] = field(default_factory=dict)
+    gaps: dict[int, WrongGap] = field(default_factory=dict)
     failures: list[Failure] = field(default_factory=list)
     unsupported: list[str] = field(default_factory=list)
 
@@ -99,6 +126,7 @@ class Atlas:
         before = len(self.cells)
         self.cells += other.cells
         self.cases |= {before + place: case for place, case in other.cases.items()}
+        self.gaps |= {before + place: wrong for place, wrong in other.gaps.items()}
         self.failures += other.failures
         self.unsupported += [line for line in other.unsupported if line not in self.unsupported]
 
@@ -138,16 +166,18 @@ def survey(
             else:
                 make_ready(MethodName.read(name, shape, made.query))
     for family in families:
-        what = f"{made.query}, {family}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
+        what = f"{made.query}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:
-            budget.left_out.append(f"{what}: not asked, {budget.why}")
+            budget.leave_out(what, family, f"not asked, {budget.why}")
             continue
-        progress(f"{what}: {count} poses")
+        progress(f"{what}, {family}: {count} poses")
         if family == "resting" and recorded is not None:
             sets = resting_poses(recorded, count)
         else:
             sets = family_poses(family, shape, (mesh,) if mesh else (), count)
-        made(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
+        asked, given = made(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
+        if asked < given:
+            budget.leave_out(what, family, f"{given - asked} of {given} poses not asked, {budget.why}")
     return atlas
 
 
@@ -176,31 +206,41 @@ class Survey:
         self._places: dict[str, int] = {}
         self._seconds: dict[str, list[float]] = {}
 
-    def ask(self, pose_sets: Iterable[PoseSet]) -> None:
-        """Every engine about every pose."""
+    def ask(self, pose_sets: Iterable[PoseSet]) -> tuple[int, int]:
+        """Every engine about every pose, until the time is spent; how many poses that was, and how many there are.
+
+        Poses between those that a budget of one in several asks about count as asked.
+        """
+        given = through = 0
         for pose_set in pose_sets:
+            over = self.budget.spent
+            if over:
+                given += len(pose_set.poses(pose_set.scene))
+                continue
             with ExitStack() as processes:
                 asked = self._loaded(pose_set.scene, processes)
                 # an engine that rounds its hulls is asked about poses of those, and judged by them
                 held = {name: replace(pose_set.scene, hulls=one.facts.hulls) for name, one in asked.items()}
                 whole = pose_set.poses(pose_set.scene)
                 poses = {name: pose_set.poses(held[name]) if one.facts.hulls else whole for name, one in asked.items()}
+                answered: list[int] = []
                 for place in range(0, len(whole), self.budget.every):
                     if self.budget.spent:
-                        self.budget.left_out.append(
-                            f"{self.family}, {self.shape}: {len(whole) - place} of {len(whole)} poses not asked, "
-                            f"{self.budget.why}"
-                        )
                         break
                     self.ask_at(place, asked, held, poses)
+                    answered.append(place)
+                else:
+                    place = len(whole)
+                given, through = given + len(whole), through + place
                 for name, one in asked.items():
-                    # of the first ones: they were all answered, so that nothing is left to be set up
+                    # of the first that were asked: they were all answered, so that none hangs or has to be set up
                     if name not in self._places or self.failures_of(name):
                         continue
-                    if (seconds := self.timed(one, poses[name][:_TIMED])) is not None:
+                    if (seconds := self.timed(one, [poses[name][place] for place in answered[:_TIMED]])) is not None:
                         self._seconds.setdefault(name, []).append(seconds)
         for name, measured in self._seconds.items():
             self.cell(name).seconds = float(np.median(measured))
+        return through, given
 
     def timed(self, one: Isolated, poses: Sequence[Pose]) -> float | None:
         """CPU time of a query, s."""

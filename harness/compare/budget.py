@@ -2,9 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from time import monotonic
+from typing import NamedTuple
+
+
+class LeftOut(NamedTuple):
+    """What was not asked.
+
+    Attributes
+    ----------
+    what : that others may have in common with it
+    which : what tells it from those; empty if nothing does
+    how : how much of it, and why; empty where `what` is all that is to be said
+    """
+
+    what: str
+    which: str = ""
+    how: str = ""
+
+
+def told_once(left: Iterable[LeftOut]) -> list[str]:
+    """A sentence for each thing that was left out, with all that has it in common.
+
+    >>> told_once([LeftOut("2 bodies", f"sizes 1 to {n} m", "not asked") for n in (10, 50)] * 2)
+    ['2 bodies, sizes 1 to 10 m; sizes 1 to 50 m: not asked']
+    """
+    whiches: dict[tuple[str, str], dict[str, None]] = {}
+    for one in left:
+        whiches.setdefault((one.what, one.how), {})[one.which] = None
+    lines = []
+    for (what, how), named in whiches.items():
+        of_all = ", ".join(filter(None, (what, "; ".join(filter(None, named)))))
+        lines.append(f"{of_all}: {how}" if how else of_all)
+    return lines
 
 
 class Budget:
@@ -17,14 +49,23 @@ class Budget:
 
     Attributes
     ----------
-    left_out : sentences
+    left : what was left out, one after another
     """
 
     def __init__(self, seconds: float | None = None, every: int = 1) -> None:
         self.seconds, self.every = seconds, every
-        self.left_out: list[str] = []
+        self.left: list[LeftOut] = []
         self._end = None if seconds is None else monotonic() + seconds
         self._shares = 1
+
+    @property
+    def left_out(self) -> list[str]:
+        """What was left out, in sentences, each thing once."""
+        return told_once(self.left)
+
+    def leave_out(self, what: str, which: str = "", how: str = "") -> None:
+        """Keep what is left out; see `LeftOut`."""
+        self.left.append(LeftOut(what, which, how))
 
     @contextmanager
     def paused(self) -> Iterator[None]:

@@ -63,9 +63,9 @@ def compare_all(
     whole: Found = {pair: Comparison() for pair in combinations(names, 2)}
     for pose_set in pose_sets:
         scene = pose_set.scene
-        what = f"{_asked(pose_set)}{len(scene.bodies)} bodies, shape {scene.shape}"
+        what = _what(pose_set)
         if budget.spent:
-            budget.left_out.append(f"{what}{_sizes(scene)}: not asked, {budget.why}")
+            budget.leave_out(what, _sizes(scene), f"not asked, {budget.why}")
             continue
         with budget.paused():
             for name in names:
@@ -91,12 +91,12 @@ class Asked:
     """
 
     def __init__(self, scene: Scene, names: NamePair, question: Question = COLLISION) -> None:
-        self._scene, self._names, self._question = scene, names, question
+        self._scene, self.names, self._question = scene, names, question
         self._processes = ExitStack()
 
     def __enter__(self) -> Asked:
         with ExitStack() as processes:
-            self._loaded = load(self._scene, self._names, processes, ANSWER_SECONDS, self._question)
+            self._loaded = load(self._scene, self.names, processes, ANSWER_SECONDS, self._question)
             self._processes = processes.pop_all()
         return self
 
@@ -139,9 +139,16 @@ def _compare_at(
         for name, claim in loaded.claims.items():
             pair = next(pair for pair in whole if name in pair)
             whole[pair].failures.append(Failure(pair, name, LOADING, 0, claim, kind="claim"))
+        left: dict[str, dict[str, None]] = {}
         for group in loaded.groups:
-            for pair, found in _Questions(pose_set, group, budget, again=True).ask().items():
+            questions = _Questions(pose_set, group, budget, again=True)
+            for pair, found in questions.ask().items():
                 whole[pair].add(found)
+            if questions.left:
+                left.setdefault(questions.left, {}).update(dict.fromkeys(questions.names))
+        if left:
+            said = "; ".join(f"{poses} of {', '.join(of)}" for poses, of in left.items())
+            budget.leave_out(_what(pose_set), _sizes(pose_set.scene), f"not asked about {said}, {budget.why}")
         answering = [asked for group in loaded.groups for asked in group.asked.values()]
         silent = {asked.name for asked in answering if asked.timeouts >= MOST_FAILURES}
         for name in sorted(silent):
@@ -154,12 +161,19 @@ def _compare_at(
 
 
 class _Questions:
-    """A group of methods asked at the poses of one scene."""
+    """A group of methods asked at the poses of one scene.
+
+    Attributes
+    ----------
+    names : of the methods
+    left : how many poses were not asked about, since the time was spent; empty if all were
+    """
+
+    left = ""
 
     def __init__(self, pose_set: PoseSet, group: Group, budget: Budget, *, again: bool) -> None:
         self._group, self._budget, self._again = group, budget, again
         self._poses = tuple(pose_set.poses(group.scene))
-        self._hard, self._asked_before = pose_set.hard, _asked(pose_set)
         facts = {name: asked.facts for name, asked in group.asked.items()}
         self._audits = {
             pair: audit_of(
@@ -168,9 +182,9 @@ class _Questions:
             for pair in group.pairs
         }
         # in their order, those that some pair needs
-        self._names = [name for name in group.asked if any(name in pair for pair in group.pairs)]
-        self._answers: dict[str, dict[int, Told]] = {name: {} for name in self._names}
-        self._failures: dict[str, list[Failure]] = {name: [] for name in self._names}
+        self.names = [name for name in group.asked if any(name in pair for pair in group.pairs)]
+        self._answers: dict[str, dict[int, Told]] = {name: {} for name in self.names}
+        self._failures: dict[str, list[Failure]] = {name: [] for name in self.names}
         self._exhausted: dict[str, str] = {}
 
     def ask(self) -> Found:
@@ -182,12 +196,7 @@ class _Questions:
         else:
             place = len(self._poses)
         if self._budget.spent and place < len(self._poses):
-            scene = self._group.scene
-            self._budget.left_out.append(
-                f"{self._asked_before}{len(scene.bodies)} bodies, shape {scene.shape}{_sizes(scene)}: "
-                f"{len(self._poses) - place} of "
-                f"{len(self._poses)} poses not asked of {', '.join(self._names)}, {self._budget.why}"
-            )
+            self.left = f"{len(self._poses) - place} of {len(self._poses)} poses"
         if self._again:
             self._ask_again()
         return self._found()
@@ -198,7 +207,7 @@ class _Questions:
     def _ask_at(self, place: int) -> None:
         pose, pairs = self._poses[place], self._still_asked()
         truths = Truths(self._group.scene, pose)
-        for name in self._names:
+        for name in self.names:
             if not any(name in pair for pair in pairs):
                 continue
             answer = self._group.asked[name].told(pose)
@@ -216,7 +225,7 @@ class _Questions:
                 self._audits[pair].add(truths, place + 1, (answers[0], answers[1]))
 
     def _ask_again(self) -> None:
-        for name in self._names:
+        for name in self.names:
             for one in unsteady(
                 self._group.asked[name], name, self._group.scene, self._poses, self._answers[name], self._budget
             ):
@@ -246,12 +255,13 @@ class _Questions:
         return found
 
 
-def _asked(pose_set: PoseSet) -> str:
+def _what(pose_set: PoseSet) -> str:
     """Of a line about these poses, what is asked there; nothing where it is whether bodies touch."""
-    question = pose_set.question
-    return "" if question.query == "collision" else f"{question.text}, "
+    question, scene = pose_set.question, pose_set.scene
+    asked = "" if question.query == "collision" else f"{question.text}, "
+    return f"{asked}{len(scene.bodies)} bodies, shape {scene.shape}"
 
 
 def _sizes(scene: Scene) -> str:
     sizes = scene.bodies.sizes
-    return f", sizes {sizes.min():g} to {sizes.max():g} m" if len(sizes) and sizes.min() != sizes.max() else ""
+    return f"sizes {sizes.min():g} to {sizes.max():g} m" if len(sizes) and sizes.min() != sizes.max() else ""

@@ -70,7 +70,7 @@ class _EventAudit:
         poses = [self._pose(0.0, "frame 0")]
         for frame in range(frames + 1):
             if budget.spent:
-                budget.left_out.append(f"{self._name}: {frames + 1 - frame} of {frames + 1} frames not held against it")
+                budget.leave_out(self._name, how=f"{frames + 1 - frame} of {frames + 1} frames not held against it")
                 break
             now = self._pose(frame * dt, f"frame {frame}")
             velocities = self._trajectory.velocities_at(frame * dt)

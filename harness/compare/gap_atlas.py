@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.compare.atlas import Survey
+from harness.compare.atlas import Survey, WrongGap
 from harness.compare.comparison import MOST_FAILURES
 from harness.compare.exact_gap import ExactGap
 from harness.compare.isolated import Isolated, NearQuestion
@@ -78,7 +78,18 @@ class GapSurvey(Survey):
             cell.wrong += 1
             cell.deepest = max(cell.deepest, float(error) / float(scene.bodies.sizes.min()))
             tolerance = one.facts.hulls_tolerance if one.facts.hulls else one.facts.tolerance
-            cell.beyond += bool(error > band(scene, tolerance, pose, _BODIES))
+            allowed = band(scene, tolerance, pose, _BODIES)
+            if error > allowed:
+                cell.beyond += 1
+                self._accuse(
+                    name, WrongGap(scene, pose, told, self.limit, truth.value, truth.certificate, error, allowed)
+                )
+
+    def _accuse(self, name: str, wrong: WrongGap) -> None:
+        """Keep the answer that is farthest off, of the size of the smaller body."""
+        known = self.atlas.gaps.get(self._places[name])
+        if known is None or _off(wrong) > _off(known):
+            self.atlas.gaps[self._places[name]] = wrong
 
     def limit_of(self, scene: Scene, truth: ExactGap, place: int) -> float:
         """m, up to which bodies count as near."""
@@ -105,6 +116,10 @@ class NearSurvey(GapSurvey):
         if near is None:
             return None
         return 0.0 if near == (not isinf(told)) else max(abs(truth.value - self.limit), np.finfo(float).tiny)
+
+
+def _off(wrong: WrongGap) -> float:
+    return wrong.off / float(wrong.scene.bodies.sizes.min())
 
 
 SURVEYS: dict[Query, type[Survey]] = {"collision": Survey, "tolerance": NearSurvey, "distance": GapSurvey}

@@ -159,8 +159,8 @@ return bool(scene.get_query_output_port().Eval(context).ComputePointPairPenetrat
 _RAPIER = """
 colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
 middle = (np.array(P) + R) / 2  # single precision has few digits to lose
-for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
-    shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
+for vertices, faces, place, quaternion in ((A, FACES_A, P, Q), (B, FACES_B, R, S)):
+    shape = rapier3d.SharedShape.{make}
     kinds = rapier3d.ActiveCollisionTypes.all()
     collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
     place = rapier3d.Vec3(*(place - middle))
@@ -169,6 +169,8 @@ rapier3d.CollisionPipeline().step(
     0.0, rapier3d.IslandManager(), rapier3d.BroadPhaseBvh(), narrow, rapier3d.RigidBodySet(), colliders)
 return any(touching for _, _, touching in narrow.intersection_pairs())
 """
+_RAPIER_HULL = "convex_hull(vertices.tolist())"
+_RAPIER_MESH = "trimesh(vertices.tolist(), faces.tolist())"
 
 
 def _smallest_32(sizes: Floats) -> float:
@@ -193,6 +195,12 @@ def _parry(make: str) -> Call:
     )
 
 
+def _rapier(make: str) -> Call:
+    return Call(
+        "rapier3d", _PACKAGE.format("rapier3d"), f"{_VERSION}import rapier3d", _RAPIER.format(make=make), unit_of
+    )
+
+
 CALLS: dict[tuple[str, Shape], Call] = {
     ("fcl", "hull"): _fcl(_FCL_HULL),
     ("fcl", "mesh"): _fcl(_FCL_MESH),
@@ -213,7 +221,8 @@ CALLS: dict[tuple[str, Shape], Call] = {
     ),
     ("parry3d", "hull"): _parry(_PARRY_HULL),
     ("parry3d", "mesh"): _parry(_PARRY_MESH),
-    ("rapier3d", "hull"): Call("rapier3d", _PACKAGE.format("rapier3d"), f"{_VERSION}import rapier3d", _RAPIER, unit_of),
+    ("rapier3d", "hull"): _rapier(_RAPIER_HULL),
+    ("rapier3d", "mesh"): _rapier(_RAPIER_MESH),
     ("pybullet", "hull"): Call(
         "pybullet", _PACKAGE.format("pybullet"), f"{_VERSION}import pybullet", _PYBULLET, unit_of_smallest
     ),

@@ -91,6 +91,21 @@ def number(value: float | None) -> str:
     return _signed(f"{value:,.{_decimals(value)}f}".replace(",", THIN))
 
 
+def as_given(value: float, digits: int = 6) -> str:
+    """A number as somebody set it, without zeros at its end: 10⁻⁶ where a measured one would be 1.00 × 10⁻⁶.
+
+    >>> as_given(0.25), as_given(1e-6), as_given(-2.5e-7).replace(THIN, " ")
+    ('0.25', '10⁻⁶', '−2.5 × 10⁻⁷')
+    """
+    mantissa, far, exponent = f"{value:.{digits}g}".partition("e")
+    if not far:
+        return _signed(mantissa)
+    power = power_of_ten(int(exponent))
+    if mantissa in ("1", "-1"):
+        return _signed(mantissa[:-1]) + power
+    return f"{_signed(mantissa)}{THIN}×{THIN}{power}"
+
+
 def power_of_ten(exponent: int) -> str:
     """10⁻⁴ for -4."""
     return f"10{str(exponent).translate(_SUPERSCRIPTS)}"
@@ -142,7 +157,7 @@ def _fraction(value: float) -> str:
         # 0.5 and 0.05 are better as decimals; 1/60 has none
         if near.numerator == 1 and math.isclose(float(near), value, rel_tol=1e-12) and len(f"{value:.12g}") > 5:
             return f"1/{near.denominator}"
-    return number(value) if value.is_integer() else _signed(f"{value:.6g}")
+    return number(value) if value.is_integer() else as_given(value)
 
 
 def _decimals(value: float) -> int:

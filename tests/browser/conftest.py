@@ -16,6 +16,7 @@ from harness.scene.mesh_child import open_all
 from harness.store.database import Database
 from harness.store.recording import Recording
 from tests.report.conftest import ALL, write
+from tests.report.test_atlas_page import cell
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 # a WebGL2 that needs no graphics card, and no traffic of the browser's own
@@ -82,7 +83,32 @@ def report(cubes: Recording, spheres: Recording, tmp_path_factory: pytest.TempPa
     with Database.open(folder / "results.db") as database:
         database.add_recording("homework/number-of-objects-0", cubes)
         database.add_recording("single-0", spheres)
+        add_judged(database)
     return write_report(folder / "results.db", folder / "pages").parent
+
+
+def add_judged(database: Database) -> None:
+    """What engines answered to an atlas, and to a set of proven times, for their two pages."""
+    none = {name: [] for name in ("pairs", "cases", "shared", "unsupported", "shown")}
+    left_out = ["collision, hull of cube.ply, far; units: not asked, 30 s were spent"]
+    for place, engine in enumerate(("fcl", "mujoco", "rapier3d")):
+        cells = [
+            cell(family, mesh, query, wrong=9 * place, beyond=place, deepest=0.1 * place) | {"engine": engine}
+            for query in ("collision", "distance")
+            for mesh in ("cube.ply", "needle.off")
+            for family in ("random", "aligned", "grazing")
+        ]
+        document = none | {"left_out": left_out, "atlas": cells, "title": "Atlas", "versions": {}}
+        database.add_comparison("harness compare", "atlas/short", (engine, "exact arithmetic"), engine, document)
+        kinds = {"right": 40 - 3 * place, "missed": place, "late": 2 * place, "early": 0, "false": 0, "failed": 0}
+        times = {"without_shape": 0, "latest": 1e-3 * place, "earliest": 0.0, "seconds_a_query": 1e-4}
+        counted = {"asked": 40, **kinds, **times}
+        told = {"backend": engine, "dt": None if place else 1 / 60, "problem": None, "failures": {}, "set": "truth"}
+        told |= {"within": 1e-9, "every": 1, "commit": None, "versions": {}}
+        told |= {"families": {"random": counted, "grazing": counted, "all": counted}}
+        database.add_comparison(
+            "harness truth ask", "set/truth", (engine, "proven times"), f"t{place}", {"truth": told}
+        )
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""An experiment whose mesh lies in a package that is not installed is passed over among others, and said so."""
+"""What needs a package that is not installed is passed over and said so: whole experiments, or some of their points."""
 
 import json
 
@@ -8,6 +8,13 @@ from harness.cli.main import main
 
 LACKING = "title: Duck\nscene: {mesh: 'package:no_such_package/duck.obj', count: 2, box: [4, 4, 4]}\n"
 WHOLE = "title: Spheres\nscene: {shape: sphere, count: 2, box: [4, 4, 4]}\nmotion: {duration: 0.1}\n"
+TWO = """
+title: Two libraries
+scene: {shape: sphere, count: 2, box: [4, 4, 4]}
+motion: {duration: 0.1}
+zip:
+  - {backend: [fcl, coal], algorithm: [grid, native]}
+"""
 SAID = 'experiments/duck.yaml:2:15: the package "no_such_package" is not installed'
 
 
@@ -50,3 +57,15 @@ def test_what_brings_the_meshes_of_pybullet_is_named(experiments, capsys, monkey
     (experiments / "duck.yaml").write_text(LACKING.replace("no_such_package", "pybullet_data"))
     assert main(["validate", "experiments"]) == 0
     assert "pip install 'harness[pybullet]' brings it" in capsys.readouterr().out
+
+
+def test_a_plan_passes_over_the_points_of_a_library_that_is_not_installed(experiments, capsys, monkeypatch):
+    why = 'backend "coal" cannot be used: not installed'
+    monkeypatch.setattr("harness.backends.statement.missing", lambda name: why if name == "coal" else None)
+    (experiments / "two.yaml").write_text(TWO)
+    assert main(["plan", "experiments/two.yaml"]) == 0
+    said = capsys.readouterr().out
+    assert f"points passed over: {why}" in said
+    assert main(["plan", "experiments/two.yaml", "--json"]) == 0
+    [run] = json.loads(capsys.readouterr().out)["runs"]
+    assert run["parameters"]["backend"] == "fcl"

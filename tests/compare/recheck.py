@@ -1,10 +1,10 @@
 """Proves anew, by plain fractions, what is true of every pose about which the published atlas calls an engine wrong.
 
-    python -m tests.compare.recheck [results/published/atlas/accusations.json]
+    python -m tests.compare.recheck [results/published/atlas/accusations.json ...]
 
 Nothing of harness is imported. A row has both bodies as they were judged: vertices (of a mesh triangles, too), position
-and quaternion, all doubles, and the certificate: weights of a common point, or a normal of a plane between hulls. That
-two surfaces are apart is proven triangle by triangle.
+and quaternion, all doubles, and the certificate: weights of a common point, or a normal of a plane between hulls; of a
+gap, weights of the nearest points. That two surfaces are apart, and how far, is proven triangle by triangle.
 """
 
 import json
@@ -13,6 +13,8 @@ from fractions import Fraction
 from itertools import product
 from math import lcm
 from pathlib import Path
+
+from tests.compare.plain_distances import cross, dot, minus, triangles
 
 PUBLISHED = Path(__file__).parents[2] / "results/published/atlas/accusations.json"
 
@@ -40,7 +42,9 @@ def as_integers(*sides):
 
 
 def proven(row):
-    """Whether the certificate of a row proves what it says of touching."""
+    """Whether the certificate of a row proves what it says of touching, or that a gap was told wrong."""
+    if "query" in row:
+        return is_off(row, *told_apart(row))
     proof, bodies = row["certificate"], row["bodies"]
     if row["shape"] == "sphere":
         squared = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(*(b["position"] for b in bodies), strict=True))
@@ -53,6 +57,65 @@ def proven(row):
     triangles = [[[points[k] for k in face] for face in body["faces"]]
                  for points, body in zip((one, other), bodies, strict=True)]  # fmt: skip
     return all(apart(first, second) for first, second in product(*triangles))
+
+
+def is_off(row, nearer, farther):
+    """Whether what was told is wrong by more than is allowed.
+
+    Parameters
+    ----------
+    nearer, farther : whether the gap is proven to be less, or more, than a length
+    """
+    within, allowed = Fraction(row["within"]), Fraction(row["allowed"])
+    if row["told"] is None:  # not reported
+        return nearer(within - allowed)
+    if row["query"] == "tolerance":
+        return farther(within + allowed)
+    told = Fraction(row["told"])
+    return nearer(told - allowed) or farther(told + allowed)
+
+
+def told_apart(row):
+    """What decides whether the gap is proven to be less than a length, and whether to be more."""
+    bodies = row["bodies"]
+    if row["shape"] == "sphere":
+        squared = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(*(b["position"] for b in bodies), strict=True))
+        reach = sum(Fraction(body["size"]) for body in bodies) / 2
+        return (lambda x: x > 0 and squared < (reach + x) ** 2), (lambda x: x < 0 or squared > (reach + x) ** 2)
+    one, other = map(world, bodies)
+    faces = [body["faces"] or [range(len(body["vertices"]))] for body in bodies]
+    points = [mean(side, of, parts) for side, of, parts in zip(proof_of(row), (one, other), faces, strict=True)]
+    between = minus(*points)
+    upper = dot(between, between)
+    if not upper:
+        lower = upper
+    elif row["shape"] == "hull":
+        width = min(dot(between, point) for point in one) - max(dot(between, point) for point in other)
+        lower = width * width / upper if width > 0 else 0
+    else:
+        lower = nearest_triangles(faces, one, other)
+    return (lambda x: x > 0 and upper < x * x), (lambda x: x < 0 or lower > x * x)
+
+
+def proof_of(row):
+    return row["certificate"]["first"], row["certificate"]["second"]
+
+
+def mean(side, points, parts):
+    """Of some points of one part, by their weights, positive and of sum 1."""
+    shares = [(k, Fraction(share)) for k, share in side]
+    assert min(share for _, share in shares) > 0
+    assert sum(share for _, share in shares) == 1
+    assert any({k for k, _ in shares} <= set(part) for part in parts)
+    return [sum(share * points[k][axis] for k, share in shares) for axis in range(3)]
+
+
+def nearest_triangles(faces, one, other):
+    """The squared distance of two surfaces, by all pairs of their triangles."""
+    scale = lcm(*(part.denominator for point in (*one, *other) for part in point))
+    whole = [[[int(part * scale) for part in point] for point in points] for points in (one, other)]
+    sides = [[[points[k] for k in face] for face in of] for of, points in zip(faces, whole, strict=True)]
+    return Fraction(min(triangles(first, second) for first, second in product(*sides))) / scale**2
 
 
 def have_common_point(proof, bodies, one, other):
@@ -85,21 +148,11 @@ def apart(first, second):
     return any(parts(axis, first, second) for axis in axes)
 
 
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def minus(a, b):
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
 if __name__ == "__main__":
-    rows = json.loads(Path(*sys.argv[1:] or [PUBLISHED]).read_text())
-    honest = [place for place, row in enumerate(rows) if not proven(row) or row["says"] == row["touching"]]
+    rows = [row for path in sys.argv[1:] or [PUBLISHED] for row in json.loads(Path(path).read_text())]
+    honest = [
+        place for place, row in enumerate(rows) if not proven(row) or row.get("says", True) == row.get("touching")
+    ]
     print(f"{len(rows) - len(honest)} of {len(rows)} accusations are proven")
     for place in honest:
         print(f"row {place}: {rows[place]['engine']}, {rows[place]['family']}: not proven")

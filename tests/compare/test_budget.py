@@ -2,11 +2,13 @@
 
 import time
 
+from harness.compare.atlas import survey
 from harness.compare.budget import Budget
-from harness.compare.comparison import compare
+from harness.compare.comparison import compare, compare_all
+from harness.compare.hard_poses import hard_poses
 from harness.compare.poses import flown
 from tests.compare.test_comparison import compared, written
-from tests.conftest import random_scene
+from tests.conftest import cube_mesh, random_scene
 
 
 def test_every_third_pose_is_asked_of_both(tmp_path):
@@ -20,6 +22,39 @@ def test_without_time_nothing_is_asked_and_all_of_it_is_told():
     found = compare([flown(random_scene("sphere", 4, 3.0), 9, 0.1)], ["fcl", "pybullet"], budget=budget)
     assert (found.tallies, found.passed) == ([], True)
     assert budget.left_out == ["4 bodies, shape sphere: not asked, 1e-09 s were spent"]
+
+
+def test_scenes_that_differ_in_sizes_alone_are_told_of_in_one_line():
+    budget = Budget(1e-9)
+    compare(hard_poses("sphere", (), 1), ["fcl", "pybullet"], budget=budget)
+    (line,) = budget.left_out
+    assert line.startswith("2 bodies, shape sphere, sizes 0.3 to 1 m; sizes 1 to 10 m; sizes 1 to 50 m; ")
+    assert line.endswith(": not asked, 1e-09 s were spent")
+
+
+def test_poses_that_several_methods_were_not_asked_about_are_told_of_once():
+    class Ending(Budget):
+        @property
+        def spent(self):
+            return asked()
+
+    calls = iter(range(1000))
+
+    def asked():
+        return next(calls) > 3
+
+    budget = Ending(1.0)
+    compare_all([flown(random_scene("sphere", 4, 3.0), 9, 0.1)], ["fcl", "pybullet", "fcl/grid"], budget=budget)
+    (line,) = budget.left_out
+    assert line.count("poses") == 1
+    assert "not asked about " in line
+    assert line.endswith(" of 10 poses of fcl, pybullet, fcl/grid, 1 s were spent")
+
+
+def test_families_of_which_an_atlas_left_out_as_much_share_a_line():
+    budget = Budget(1e-9)
+    survey("hull", cube_mesh(), ["random", "sizes"], 8, ["fcl", "fcl/grid"], budget)
+    assert budget.left_out == [f"collision, hull of {cube_mesh().name}, random; sizes: not asked, 1e-09 s were spent"]
 
 
 def test_what_a_pause_takes_does_not_count():

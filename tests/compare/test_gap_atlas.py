@@ -2,9 +2,11 @@
 
 import json
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
+from harness.cli.main import main
 from harness.cli.surveying import cell_row
 from harness.compare.atlas import survey
 from harness.compare.budget import Budget
@@ -12,10 +14,17 @@ from harness.compare.exact_gap import ExactGap
 from harness.compare.families import family_poses
 from harness.compare.gap_atlas import SURVEYS
 from harness.compare.own_gaps import OWN
-from tests.compare import liars
+from tests.compare import liars, recheck
 from tests.conftest import cube_mesh
 
+EXPERIMENTS = Path(__file__).parents[2] / "experiments"
 FAMILIES = ["random", "grazing", "shared"]
+LONG = """
+    def distances(self, positions, quaternions, within):
+        found = super().distances(positions, quaternions, 2 * within)
+        long = found.gaps * 1.01
+        return found._replace(pairs=found.pairs[long <= within], gaps=long[long <= within], points=None)
+"""
 
 
 def found(query, shape, engines, families=FAMILIES, count=4):
@@ -35,13 +44,7 @@ def test_the_kernels_and_fcl_are_never_off_by_more_than_their_tolerance(query, s
 
 
 def test_gaps_that_are_one_percent_too_long_are_found_wherever_bodies_are_apart(tmp_path, monkeypatch):
-    body = """
-        def distances(self, positions, quaternions, within):
-            found = super().distances(positions, quaternions, 2 * within)
-            long = found.gaps * 1.01
-            return found._replace(pairs=found.pairs[long <= within], gaps=long[long <= within], points=None)
-    """
-    monkeypatch.setitem(liars.LIARS, "long-gaps", body)
+    monkeypatch.setitem(liars.LIARS, "long-gaps", LONG)
     name = liars.install("long-gaps", tmp_path / "plugins", monkeypatch)
     for query in ("distance", "tolerance"):
         cells = found(query, "hull", [name], ["random", "deep"], 24)
@@ -72,3 +75,29 @@ def test_of_two_cubes_on_an_axis_the_gap_is_what_is_between_their_faces():
     side = 2 * float(pose_set.scene.solid_of(1.0).vertices[:, 0].max())
     assert ExactGap(pose_set.scene, apart).at_most(1.5 - side + 1e-16)
     assert not ExactGap(pose_set.scene, apart).at_most(float(Fraction(1.5) - Fraction(side) - Fraction(1, 10**15)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ["hull", "mesh"])
+def test_a_saved_atlas_of_gaps_has_accusations_that_plain_fractions_prove(shape, tmp_path, monkeypatch):
+    monkeypatch.setitem(liars.LIARS, "long-gaps", LONG)
+    name = liars.install("long-gaps", tmp_path / "plugins", monkeypatch)
+    source = (EXPERIMENTS / "atlas/gaps.yaml").read_text(encoding="utf-8")
+    source = source.replace("mesh: cube.ply", f"mesh: {EXPERIMENTS.parent / 'meshes/cube.ply'}")
+    source = source.replace("[random, aligned, grazing, deep, contained, shared, sizes, far, units]", "[random, deep]")
+    (tmp_path / "gaps.yaml").write_text(source)
+    command = ["compare", str(tmp_path / "gaps.yaml"), "--backends", f"fcl,{name}", "--set", f"shape={shape}"]
+    main([*command, "--save", str(tmp_path / "saved"), "--db", str(tmp_path / "r.db")])
+    rows = json.loads((tmp_path / "saved/accusations.json").read_text(encoding="utf-8"))
+    assert {(row["engine"], row["family"], row["query"]) for row in rows} == {
+        (name, "random", "distance"),
+        (name, "random", "tolerance"),
+    }
+    for row in rows:
+        assert row["off"] > row["allowed"]
+        assert recheck.proven(row)
+        if row["query"] == "distance":
+            assert not recheck.proven(row | {"told": row["gap"]})
+            assert recheck.proven(row | {"told": 0.0})
+        else:
+            assert not recheck.proven(row | {"told": 0.0})

@@ -12,6 +12,7 @@ from harness.compare.script import LONGEST
 from tests.compare.recheck import PUBLISHED, proven
 
 ROWS = json.loads(PUBLISHED.read_text())
+GAPS = json.loads((PUBLISHED.parent / "gaps" / PUBLISHED.name).read_text())
 SHOWN = [row for row in ROWS if row["file"]]
 
 
@@ -21,6 +22,15 @@ def test_plain_fractions_prove_every_accusation():
     for row in ROWS:
         assert row["says"] != row["touching"]
         assert proven(row), (row["engine"], row["family"])
+
+
+@pytest.mark.slow
+def test_plain_fractions_prove_every_accusation_about_a_gap_and_none_that_is_changed_to_the_truth():
+    assert len(GAPS) >= 40
+    for row in GAPS:
+        assert proven(row), (row["engine"], row["family"])
+        true = row["gap"] if row["query"] == "distance" else 0.0 if row["gap"] < row["within"] else None
+        assert not proven(row | {"told": true})
 
 
 @pytest.mark.slow
@@ -43,6 +53,15 @@ def test_at_least_five_reproductions_of_several_libraries_need_no_more_than_sixt
         text = (PUBLISHED.parent / row["file"]).read_text()
         assert text.count("\n") <= LONGEST
         assert "harness" not in text
+
+
+def test_fcls_wrong_distance_of_two_cubes_is_shown_without_this_program():
+    script = PUBLISHED.parent / "gaps/reproductions/fcl-shared-hull.py"
+    assert script.read_text().count("\n") <= LONGEST
+    ended = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr  # it has proven the truth
+    if version("python-fcl") == "0.7.0.11":
+        assert ended.stdout.rstrip().endswith("\nreproduced")
 
 
 @pytest.mark.slow

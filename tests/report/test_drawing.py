@@ -108,3 +108,7 @@ def test_colours_are_told_apart_by_the_colour_blind(colours, matrix):
 def test_pipelines_that_are_mostly_compared_have_six_colours():
     names = [*(f"fcl/{name}" for name, word in ALGORITHMS.items() if word.own), "pybullet"]
     assert len({palette.colour(style_of(MethodName.read(name, "hull"))) for name in names}) == len(names) == 6
+    own_and_fcl = "fcl/brute-force", "fcl/grid", "fcl/native"
+    for page in (("fcl/grid", "fcl/native", "coal", "mujoco", "trimesh", "pybullet"), own_and_fcl):
+        asked = [style_of(MethodName.read(name, "hull", "distance")) for name in page]
+        assert len({palette.colour(style) for style in asked}) == len(page)

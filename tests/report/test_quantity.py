@@ -45,7 +45,7 @@ def test_a_margin_has_the_decimals_of_its_value():
 
 def test_leaves_read_as_their_author_wrote_them():
     assert leaf_text(1 / 60) == "1/60"
-    assert [leaf_text(value) for value in (0.25, 0.01, 1e-6, 1000)] == ["0.25", "0.01", "1e−06", "1\u202f000"]
+    assert [leaf_text(value) for value in (0.25, 0.01, 1e-6, 1000)] == ["0.25", "0.01", "10⁻⁶", "1\u202f000"]
     assert leaf_text({"uniform": [0.5, 1.5]}) == "uniform 0.5 to 1.5"
     assert (leaf_text(None), leaf_text(True)) == ("none", "yes")
 

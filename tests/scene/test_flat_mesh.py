@@ -94,6 +94,7 @@ def test_a_hull_of_it_is_refused_where_the_mesh_is_named(quad, capsys):
 
 
 def test_a_library_that_replaces_meshes_by_hulls_says_so(quad):
+    pytest.importorskip("pybullet", reason="pip install 'harness[pybullet]'")
     with pytest.raises(InputError, match="a flat mesh has none"):
         hits(quad, "native", UPRIGHT, 0, backend="pybullet")
 

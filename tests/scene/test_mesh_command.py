@@ -48,6 +48,7 @@ def test_wrong_input_is_one_sentence_and_exit_2(words, reason, capsys):
 
 
 def test_files_of_installed_packages_are_named_as_experiments_name_them(capsys):
+    pytest.importorskip("pybullet_data", reason="pip install 'harness[pybullet]'")
     assert main(["mesh", "inspect", "package:pybullet_data/duck.obj", "package:pybullet_data/dukc.obj", "--json"]) == 2
     told = capsys.readouterr()
     (duck,) = json.loads(told.out)["meshes"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from harness.report.quantity import number
+from harness.report.quantity import as_given, number
 
 _ERRORS = {
     "missed": "missing",
@@ -56,7 +56,7 @@ def _said(row: Mapping[str, Any]) -> str:
 
 def _digits(value: float) -> str:
     """With so many digits that two numbers of which one is wrong look different."""
-    return f"{value:.9g}".replace("-", "−")
+    return as_given(value, 9)
 
 
 def _within(row: Mapping[str, Any]) -> str:
@@ -101,7 +101,7 @@ def _vertices(count: int) -> str:
 
 
 def _float(part: float | str) -> str:
-    return f"{part:.6g}".replace("-", "−") if isinstance(part, float | int) else _short(part)
+    return as_given(part) if isinstance(part, float | int) else _short(part)
 
 
 def _short(text: str) -> str:

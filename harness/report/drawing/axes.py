@@ -9,7 +9,7 @@ from typing import Literal
 
 from harness.report.drawing import palette
 from harness.report.drawing.canvas import Canvas
-from harness.report.quantity import number, power_of_ten
+from harness.report.quantity import as_given, number, power_of_ten
 
 Form = Literal["wide", "narrow", "card"]
 """Every drawing is made for desks and for phones: the lettering of one scaled to the other cannot be read."""
@@ -110,7 +110,7 @@ def tick_text(value: float) -> str:
     """A round number of an axis, without the zeros that three significant digits would add; far from 1, its power."""
     if value > 0.0 and not 1e-3 <= value < 1e6 and math.isclose(power := math.log10(value), round(power)):
         return power_of_ten(round(power))
-    return number(value) if value.is_integer() else f"{value:.4g}".replace("-", "−")
+    return number(value) if value.is_integer() else as_given(value, 4)
 
 
 def shorten(text: str, characters: float) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from harness.report.drawing import palette
 from harness.report.drawing.axes import CHARACTER, FONT, Form
 from harness.report.drawing.canvas import Canvas
+from harness.report.quantity import power_of_ten
 
 DECADES = 16
 """To either side of contact: from 1e-16 to a tenth of the size and more."""
@@ -61,5 +62,5 @@ def draw_gaps(rows: Mapping[str, Row], kinds: Sequence[str], form: Form, name: s
 def _ticks(wide: bool) -> list[tuple[int, str]]:
     marks = (15, 12, 9, 6, 3) if wide else (9, 3)
     places = [(17 - mark, mark) for mark in marks]
-    left = [(-place, f"−1e−{mark}") for place, mark in places]
-    return [*left, (0, "0"), *((place, f"1e−{mark}") for place, mark in places)]
+    left = [(-place, f"−{power_of_ten(-mark)}") for place, mark in places]
+    return [*left, (0, "0"), *((place, power_of_ten(-mark)) for place, mark in places)]

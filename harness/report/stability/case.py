@@ -9,7 +9,6 @@ it survives all others.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,7 +24,7 @@ from harness.report.criteria import as_criterion
 from harness.report.experiment import ExperimentPage
 from harness.report.methods import methods_of
 from harness.report.missing import is_complete
-from harness.report.quantity import leaf_text, number
+from harness.report.quantity import as_given, leaf_text, number
 from harness.store.records import VerdictRow
 from harness.vocabulary import MethodName
 
@@ -171,9 +170,7 @@ def _limit(criterion: Mapping[str, Any], bounds: Limits) -> str:
 
 def _declared(value: float) -> str:
     """A limit as a person sets it: 10⁻¹² where a measured number would be 1.00 × 10⁻¹²."""
-    if 1e-4 <= abs(value) < 1e15:
-        return number(value) if float(value).is_integer() else f"{value:g}".replace("-", "−")
-    return re.sub(r"^1\D+(?=10)", "", re.sub(r"\.?0+(?=\D)", "", number(value), count=1))
+    return number(value) if float(value).is_integer() and abs(value) < 1e15 else as_given(value)
 
 
 def _short(text: str) -> str:

@@ -108,8 +108,8 @@ def simulated() -> list[Simulated]:
         (exponents, "the interval of an exponent, five repeats, does not hold it", "5 %", 2000, _exponent(5)),
         (exponents, "the interval of an exponent, ten repeats, does not hold it", "5 %", 2000, _exponent(10)),
         *(
-            (sweeps, f"a sweep of the same program, {n} repeats, has a slower point", few, 300, _sweeps(n, 1.0))
-            for n in (1, 3, 5, 10)
+            (sweeps, f"a sweep of the same program, {repeats}, has a slower point", few, 300, _sweeps(n, 1.0))
+            for n, repeats in ((1, "1 repeat"), (3, "3 repeats"), (5, "5 repeats"), (10, "10 repeats"))
         ),
         (found, "a method 1.2 times as fast, five repeats, is named", more, 200, _winners([1, 1.2], 5)),
         (found, "a method 1.2 times as fast, ten repeats, is named", more, 200, _winners([1, 1.2], 10)),

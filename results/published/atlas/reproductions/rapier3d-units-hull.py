@@ -23,7 +23,7 @@ R, S = [-0.705306624, 0.372211712, 0.00200704], [-0.06099371797055689, 0.1599835
 def touching():
     colliders, narrow = rapier3d.ColliderSet(), rapier3d.NarrowPhase()
     middle = (np.array(P) + R) / 2  # single precision has few digits to lose
-    for vertices, place, quaternion in ((A, P, Q), (B, R, S)):
+    for vertices, faces, place, quaternion in ((A, FACES_A, P, Q), (B, FACES_B, R, S)):
         shape = rapier3d.SharedShape.convex_hull(vertices.tolist())
         kinds = rapier3d.ActiveCollisionTypes.all()
         collider = rapier3d.Collider.new(shape).sensor(True).active_collision_types(kinds)
