@@ -5,7 +5,8 @@ The functions here are what the commands stand on; importing this module imports
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+# False, as that of `typing`, whose import takes longest of all that comes before Ctrl-C is heeded.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from harness.cli.interruption import end_without_a_word, ignore_signals
+from harness.cli.silent_end import end_without_a_word, ignore_signals
 
 
 def run() -> int:

@@ -6,7 +6,9 @@ import igl.copyleft.cgal
 import numpy as np
 
 from harness.arrays import Floats, Pairs
-from harness.backends.poses import close_pairs, near_radii, require_finite, rotations
+from harness.backends.close_spheres import close_pairs
+from harness.backends.poses import near_radii, require_finite
+from harness.backends.rotations import rotations
 from harness.scene.mesh import has_area
 from harness.scene.scene import Scene
 from harness.vocabulary import Shape

@@ -6,8 +6,9 @@ import coal
 import numpy as np
 
 from harness.arrays import Floats, Pairs
-from harness.backends.poses import SLACK, near_pairs, require_finite, rotations
+from harness.backends.poses import SLACK, near_pairs, require_finite
 from harness.backends.protocol import NearPairs
+from harness.backends.rotations import rotations
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Surface
 from harness.scene.scene import Scene, Solid

@@ -20,8 +20,9 @@ from pydrake.geometry import (
 from pydrake.math import RigidTransform, RotationMatrix
 
 from harness.arrays import Floats, Pairs
-from harness.backends.poses import near_pairs, require_finite, rotations
+from harness.backends.poses import near_pairs, require_finite
 from harness.backends.protocol import NearPairs
+from harness.backends.rotations import rotations
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Surface
 from harness.scene.scene import Scene, Solid

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import chain, combinations, compress, repeat
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import fcl
 import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import UNITS, FclObjects
-from harness.backends.fcl_pair_gaps import FclPairGaps
 from harness.backends.fcl_tree import FclTree
 from harness.backends.poses import Motion, impact_times, near_pairs, near_radii, require_finite
 from harness.backends.protocol import ImpactTimes, NearPairs
 from harness.scene.scene import Scene
 from harness.vocabulary import Query, Shape
+
+if TYPE_CHECKING:
+    from harness.backends.fcl_pair_gaps import FclPairGaps
 
 # Up to so many bodies the pairs are kept in lists (8 MB), which saves a tenth of the time.
 MOST_LISTED = 1000
@@ -91,6 +93,8 @@ class Fcl:
     def _single(self) -> FclPairGaps:
         """What asks about single pairs; made when it is first needed, since it builds every mesh once more."""
         if self._pair_gaps is None:
+            from harness.backends.fcl_pair_gaps import FclPairGaps  # which imports scipy
+
             self._pair_gaps = FclPairGaps(self._scene)
         return self._pair_gaps
 

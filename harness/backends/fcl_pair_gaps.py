@@ -13,7 +13,8 @@ import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import FclObjects
-from harness.backends.poses import Motion, rotations
+from harness.backends.poses import Motion
+from harness.backends.rotations import rotations
 from harness.scene.scene import Scene
 
 # rad: the motion from one transform to another turns by the shorter way, and is bounded the tighter the less it turns

@@ -8,15 +8,10 @@ import ipctk
 import numpy as np
 
 from harness.arrays import Floats, Pairs
-from harness.backends.poses import (
-    Motion,
-    close_pairs,
-    impact_times,
-    near_radii,
-    require_finite,
-    rotations,
-)
+from harness.backends.close_spheres import close_pairs
+from harness.backends.poses import Motion, impact_times, near_radii, require_finite
 from harness.backends.protocol import ImpactTimes
+from harness.backends.rotations import rotations
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import Triangles, has_area
 from harness.scene.scene import Scene, Solid

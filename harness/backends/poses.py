@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
-from harness.arrays import Floats, Ints, Pairs
+from harness.arrays import Floats, Pairs
 from harness.backends.protocol import ImpactTimes, NearPairs
 
 # Relative: by how much more than a gap or a way spheres are grown, so that rounding loses no pair.
@@ -34,7 +32,10 @@ class Motion(NamedTuple):
 
     def at(self, time: float) -> tuple[Floats, Floats]:
         """Positions and quaternions so many seconds after the start."""
-        turned = Rotation.from_rotvec(self.spins * time) * rotations(self.quaternions)
+        from harness.backends.rotations import rotations_at  # half a second that others need not spend
+
+        everybody = np.arange(len(self.positions))
+        turned = rotations_at(self, everybody, np.full(len(everybody), time))
         return self.positions + time * self.velocities, turned.as_quat()[:, [3, 0, 1, 2]]
 
     def middle(self) -> Floats:
@@ -53,16 +54,6 @@ class Motion(NamedTuple):
         """Times from 0 to `duration`, s, evenly spaced, between which no body turns by more than an angle, rad."""
         spin = float(np.linalg.norm(self.spins, axis=1).max(initial=0.0))
         return np.linspace(0.0, self.duration, max(1, int(np.ceil(spin * self.duration / largest_turn))) + 1)
-
-
-def rotations(quaternions: Floats) -> Rotation:
-    """Of (n, 4) unit quaternions w x y z."""
-    return Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
-
-
-def rotations_at(motion: Motion, bodies: Ints, times: Floats) -> Rotation:
-    """Of bodies (k,), each at a time (k,) s after the start."""
-    return Rotation.from_rotvec(motion.spins[bodies] * times[:, None]) * rotations(motion.quaternions[bodies])
 
 
 def require_finite(*poses: Floats) -> None:
@@ -98,18 +89,3 @@ def impact_times(found: Sequence[tuple[int, int, float]], duration: float) -> Im
     ordered = sorted(found)
     pairs = np.array([(i, j) for i, j, _ in ordered], np.int64).reshape(-1, 2)
     return ImpactTimes(pairs, np.array([min(max(time, 0.0), duration) for *_, time in ordered], np.float64))
-
-
-def close_pairs(centres: Floats, radii: Floats) -> Pairs:
-    """Pairs of spheres that touch, by scipy's tree, for libraries that cannot be asked for them.
-
-    Parameters
-    ----------
-    centres : (n, 3) float array, m
-    radii : (n,) float array, m
-    """
-    pairs = cKDTree(centres).query_pairs(2.0 * radii.max(initial=0.0), output_type="ndarray").astype(np.int64)
-    between = np.linalg.norm(centres[pairs[:, 0]] - centres[pairs[:, 1]], axis=1)
-    pairs = np.sort(pairs[between <= radii[pairs].sum(axis=1)], axis=1)
-    ordered: Pairs = pairs[np.lexsort(pairs.T[::-1])]
-    return ordered

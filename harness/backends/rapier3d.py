@@ -6,9 +6,10 @@ import numpy as np
 import rapier3d
 
 from harness.arrays import Floats, Pairs
-from harness.backends.poses import Motion, impact_times, near_pairs, require_finite, rotations
+from harness.backends.poses import Motion, impact_times, near_pairs, require_finite
 from harness.backends.protocol import ImpactTimes, NearPairs
 from harness.backends.rapier_casts import Casts, ShapeData
+from harness.backends.rotations import rotations
 from harness.errors import InputError
 from harness.narrowphase.units import UNITS, unit_of
 from harness.scene.mesh import has_area

@@ -17,7 +17,8 @@ import numpy as np
 import rapier3d
 
 from harness.arrays import Pairs
-from harness.backends.poses import Motion, rotations_at
+from harness.backends.poses import Motion
+from harness.backends.rotations import rotations_at
 from harness.child_process import Channel, Child
 from harness.cpu_time import charge
 from harness.scene.scene import Solid

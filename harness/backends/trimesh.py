@@ -10,9 +10,11 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from harness.arrays import Floats, Pairs
+from harness.backends.close_spheres import close_pairs
 from harness.backends.fcl_objects import UNITS, fcl_unit
-from harness.backends.poses import close_pairs, near_pairs, near_radii, require_finite, rotations
+from harness.backends.poses import near_pairs, near_radii, require_finite
 from harness.backends.protocol import NearPairs
+from harness.backends.rotations import rotations
 from harness.errors import InputError
 from harness.scene.mesh import has_area
 from harness.scene.scene import Scene, Solid

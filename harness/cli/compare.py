@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
+from harness.errors import InputError
 
 if TYPE_CHECKING:
     from harness.cli.surveying import Surveyed
@@ -83,6 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
     experiments, meshes = prepare(arguments.paths, overrides_of(arguments), progress)
     if arguments.db is not None:
         _open(arguments.db).close()  # before the work, not after it
+    if arguments.save:
+        _make_folder(arguments.save)
     whole = Comparison()
     rows: list[tuple[Reduced, bool]] = []
     keep = []
@@ -117,9 +120,14 @@ def run(arguments: argparse.Namespace) -> int:
     whole.left_out += [line for line in budget.left_out if line not in whole.left_out]
     # as `document` has them: what one backend loses first, then what both share
     ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
-    files = _saved(ordered, meshes, arguments.save) if arguments.save else {}
+    files: dict[int, str] = {}
+    unsaved: OSError | None = None
     if arguments.save:
-        _save_atlases(atlases, ordered, files, arguments.save)
+        try:
+            _save(ordered, meshes, arguments.save, files)
+            _save_atlases(atlases, ordered, files, arguments.save)
+        except OSError as error:  # what was found is said and kept all the same
+            unsaved = error
     cells = [cell for atlas in atlases for cell in atlas.atlas.cells]
     if arguments.json:
         atlas = {"atlas": [cell_row(cell) for cell in cells]} if cells else {}
@@ -137,13 +145,14 @@ def run(arguments: argparse.Namespace) -> int:
             seen = f"{case.wrong}, {case.pose.name}, call {case.query_index}"
             progress(f"{seen}: asked afresh, it was not found again; it may depend on what was asked before")
     _keep(keep, arguments.db)
+    if unsaved is not None:
+        raise _unwritable(unsaved, arguments.save)
     return 0 if whole.passed else 1
 
 
 def _chosen(text: str | None) -> tuple[str, ...]:
     """The backends and methods that `--backends` names."""
     from harness.backends.registry import names
-    from harness.errors import InputError
     from harness.experiment.messages import listed, near, shown
     from harness.vocabulary import ALGORITHMS, QUERIES, algorithms_of
 
@@ -177,8 +186,6 @@ def _keep(found: list[tuple[str, tuple[str, str], str, dict[str, Any]]], chosen:
     import shlex
     import sys
 
-    from harness.errors import InputError
-
     try:
         with _open(chosen or DATABASE) as database:
             for name, pair, key, document in found:
@@ -189,21 +196,34 @@ def _keep(found: list[tuple[str, tuple[str, str], str, dict[str, Any]]], chosen:
         print(f"the verdicts are not kept: {error}", file=sys.stderr)
 
 
-def _saved(rows: list[Reduced], meshes: Opened, folder: str) -> dict[int, str]:
-    """The files of the cases that were made smaller, by the place of the case."""
+def _make_folder(folder: str) -> None:
+    from pathlib import Path
+
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(error, folder) from error
+
+
+def _unwritable(error: OSError, folder: str) -> InputError:
+    return InputError(
+        f"{error.filename or folder}: cannot be written: {error.strerror}; give another folder with --save"
+    )
+
+
+def _save(rows: list[Reduced], meshes: Opened, folder: str, files: dict[int, str]) -> None:
+    """Write the cases that were made smaller; `files` takes the file of each, by the place of the case."""
     from pathlib import Path
 
     from harness.compare.reproduction import save
     from harness.compare.script import script_of
 
     path_of = {opened.identity: path for path, opened in meshes.items()}
-    files: dict[int, str] = {}
     for place, row in enumerate(rows):
         if row.small is not None:
             paths = [path_of[mesh.identity] for mesh in row.small.scene.meshes]
             path = save(row.small, Path(folder), f"{row.name}-{place}", paths, script_of(row.small))
             files[place] = str(path)
-    return files
 
 
 def _save_atlases(atlases: list[Surveyed], rows: list[Reduced], files: dict[int, str], folder: str) -> None:

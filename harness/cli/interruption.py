@@ -14,7 +14,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+from harness.cli.silent_end import SIGNALS, exit_at_once
+
 _SHOW_CURSOR = "\x1b[?25h"
 
 
@@ -45,14 +46,7 @@ def heeding_signals(*, last: bool = False) -> Iterator[None]:
         yield
     finally:
         for number, before in heeded.items():
-            signal.signal(number, _end_without_a_word if last else before)
-
-
-def end_without_a_word() -> None:
-    """Let a signal that comes while nothing has begun end the process, with the exit code of an interruption."""
-    for number in SIGNALS:
-        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
-            signal.signal(number, _end_without_a_word)
+            signal.signal(number, exit_at_once if last else before)
 
 
 def heed(number: int) -> None:
@@ -70,16 +64,6 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
         if signal.getsignal(each) == _interrupt:
             signal.signal(each, _end_at_once)
     raise Interrupted(number)
-
-
-def ignore_signals() -> None:
-    """Let signals change nothing any more, for the last moment of a process that is ending because of one."""
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
-
-
-def _end_without_a_word(number: int, frame: FrameType | None) -> NoReturn:
-    os._exit(128 + number)
 
 
 def _end_at_once(number: int, frame: Any) -> NoReturn:

@@ -19,6 +19,7 @@ from harness.experiment.load import load_text
 from harness.replay.document import document
 from harness.replay.live import LiveServer
 from harness.replay.page import Setting, live_page
+from harness.runner.preparation import known_names
 from harness.runner.scene_of_point import derived_parameters, mean_size
 from harness.runner.servers import Servers, files_of, task_of
 from harness.runner.task import Report
@@ -87,7 +88,7 @@ def _answer(
     """Run the first point with the changed settings: once measured, once recorded."""
     changed = {name: text for name, text in asked.items() if name in first and text.strip() != first[name]}
     try:
-        now = load_text(_first_point_alone(experiment), experiment.path, changed)
+        now = load_text(_first_point_alone(experiment), experiment.path, changed, known_names())
     except InputError as error:
         return {"error": " ".join(_sentence(problem.message) for problem in error.problems)}
     point = now.points[0]

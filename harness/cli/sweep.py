@@ -62,7 +62,6 @@ def run(arguments: argparse.Namespace) -> int:
     import shlex
     import sys
 
-    from harness.cli.comparisons import compare_asked
     from harness.cli.interruption import exit_code
     from harness.cli.progress import Progress
     from harness.runner.preparation import prepare
@@ -90,9 +89,13 @@ def run(arguments: argparse.Namespace) -> int:
                 executor=_executor(arguments),
                 selection=selection,
             )
-            compared = compare_asked(
-                chosen, meshes, database, command=command, fresh=arguments.fresh, quiet=arguments.quiet
-            )
+            compared: list[str] = []
+            if any(experiment.measure.families or experiment.measure.compare for experiment in chosen):
+                from harness.cli.comparisons import compare_asked  # its imports take as long as a short sweep
+
+                compared = compare_asked(
+                    chosen, meshes, database, command=command, fresh=arguments.fresh, quiet=arguments.quiet
+                )
         except KeyboardInterrupt as interruption:
             print(f"interrupted; every finished run is kept. To go on: {command}", file=sys.stderr)
             return exit_code(interruption)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -29,11 +28,16 @@ def save(case: Case, folder: Path, name: str, meshes: Sequence[Path], script: st
     -------
     Path
         Of the experiment.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written; no half of one is left.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for number in set(case.scene.mesh_of.tolist()) if meshes else ():
         if not (folder / meshes[number].name).exists():
-            shutil.copyfile(meshes[number], folder / meshes[number].name)
+            write_whole(folder / meshes[number].name, meshes[number].read_bytes())
     path = folder / f"{name}.yaml"
     if script is not None:
         write_whole(path.with_suffix(".py"), script)

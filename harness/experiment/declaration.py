@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from harness.experiment.document import KEY, KeyPath
 from harness.experiment.leaves import INSTEAD_OF, LEAVES, SECTIONS, identity, unknown_key, unknown_leaf
-from harness.experiment.messages import shown
+from harness.experiment.messages import listed, near, shown
 from harness.experiment.problems import FileProblems, Origin, Override
 
 
@@ -134,13 +134,34 @@ def check(declaration: Declaration, problems: FileProblems) -> None:
             return given
         return replace(given, value=value, identity=identity(value))
 
-    declaration.base = {name: typed(name, given) for name, given in declaration.base.items()}
-    for axis in declaration.axes:
-        axis.rows = [tuple(map(typed, axis.leaves, row)) for row in axis.rows]
+    _change(declaration, typed)
     for row in declaration.exclude:
         row.values = {name: [typed(name, given) for given in leaf_values] for name, leaf_values in row.values.items()}
+
+
+def check_backends(declaration: Declaration, backends: Collection[str], problems: FileProblems) -> None:
+    """Report backends that there are not; no rule looks at them after that.
+
+    A row of `exclude` may name one all the same: of another installation.
+    """
+
+    def known(name: str, given: LeafValue) -> LeafValue:
+        if name != "backend" or given.origin is None or given.identity is None or given.value in backends:
+            return given
+        hint = near(given.value, backends) or f"; there are {listed(sorted(backends))}"
+        problems.add(given.origin, f"unknown backend {shown(given.value)}{hint}")
+        return replace(given, identity=None)
+
+    _change(declaration, known)
+
+
+def _change(declaration: Declaration, changed: Callable[[str, LeafValue], LeafValue]) -> None:
+    """Put others in the place of the values of all points."""
+    declaration.base = {name: changed(name, given) for name, given in declaration.base.items()}
+    for axis in declaration.axes:
+        axis.rows = [tuple(map(changed, axis.leaves, row)) for row in axis.rows]
     declaration.include = [
-        {name: typed(name, given) for name, given in included.items()} for included in declaration.include
+        {name: changed(name, given) for name, given in included.items()} for included in declaration.include
     ]
 
 

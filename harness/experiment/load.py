@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -13,8 +14,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.criterion import Criterion
-from harness.experiment.declaration import apply_override, check, declare
-from harness.experiment.document import KEY, read_document, read_value
+from harness.experiment.declaration import apply_override, check, check_backends, declare
+from harness.experiment.document import KEY, KeyPath, read_document, read_value
 from harness.experiment.expand import Expansion, expand
 from harness.experiment.experiment import Experiment
 from harness.experiment.files import name_of, no_file, path_kind
@@ -37,23 +38,37 @@ _TEXT: TypeAdapter[str] = TypeAdapter(Text)
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-def load(path: str | os.PathLike[str], set: Mapping[str, object] = _NOTHING) -> Experiment:
+@dataclass(frozen=True)
+class Names:
+    """Names that only other rooms know."""
+
+    backends: Collection[str]
+    metrics: Collection[str]
+
+
+def load(path: str | os.PathLike[str], set: Mapping[str, object] = _NOTHING, names: Names | None = None) -> Experiment:
     """Load an experiment.
 
     Parameters
     ----------
     path : of its YAML file
     set : leaf -> value, over what the file says; a value that is text is read as YAML
+    names : that there are; None to take any
 
     Raises
     ------
     InputError
         With everything that is wrong with it.
     """
-    return load_text(_read(Path(path)), path, set)
+    return load_text(_read(Path(path)), path, set, names)
 
 
-def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str, object] = _NOTHING) -> Experiment:
+def load_text(
+    text: str | bytes,
+    path: str | os.PathLike[str],
+    set: Mapping[str, object] = _NOTHING,
+    names: Names | None = None,
+) -> Experiment:
     """As `load`, from text; `path` names it in messages, and meshes are looked for beside it."""
     path = Path(path)
     document = read_document(text, str(path))
@@ -68,6 +83,8 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
         if leaf in LEAVES:
             apply_override(declaration, override, value, problems)
     check(declaration, problems)
+    if names is not None:
+        check_backends(declaration, names.backends, problems)
 
     if not _is_text(name_of(path)):
         problems.add((), "the name of this file is not UTF-8, and results are kept by name: rename it")
@@ -80,6 +97,8 @@ def load_text(text: str | bytes, path: str | os.PathLike[str], set: Mapping[str,
     claims = _criteria(file, "claims", problems)
     published = _section(Published, file, "published", problems)
     report = _section(ReportSpec, file, "report", problems)
+    if names is not None:
+        _check_metrics(file, names.metrics, problems)
     expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), problems)
     meshes = _locate_meshes(expansion, path.parent, problems)
     poses = _locate_poses(expansion, path.parent, problems)
@@ -200,6 +219,25 @@ def _criteria(file: Mapping[str, Any], key: str, problems: FileProblems) -> tupl
         except ValidationError as error:
             problems.add_errors((key, place), error, Criterion)
     return tuple(found)
+
+
+def _check_metrics(file: Mapping[str, Any], metrics: Collection[str], problems: FileProblems) -> None:
+    """Report metrics that there are not, wherever a file names one."""
+    named: list[tuple[KeyPath, Any]] = []
+    for section in ("expect", "claims"):
+        for place, row in enumerate(_sequence(file.get(section))):
+            if isinstance(row, dict) and "metric" in row:
+                named.append(((section, place, "metric"), row["metric"]))
+    report = file.get("report")
+    y = report.get("y") if isinstance(report, dict) else None
+    named += [(("report", "y", place), name) for place, name in enumerate([y] if isinstance(y, str) else _sequence(y))]
+    for path, name in named:
+        if isinstance(name, str) and name not in metrics:
+            problems.add(path, f"unknown metric {shown(name)}{near(name, metrics)}")
+
+
+def _sequence(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
 
 
 def _locate_meshes(expansion: Expansion, folder: Path, problems: FileProblems) -> dict[str, Path]:

@@ -24,7 +24,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special
 
 from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary, interval_place
 
@@ -150,6 +149,8 @@ def student(logs: ArrayLike, floor: float = 0.0) -> float:
     # a spread of rounding alone is none
     if error <= 1e-14 * beyond:
         return 0.0
+    from scipy import special  # as in `harness.measure.statistics`
+
     return float(2.0 * special.stdtr(n - 1, -beyond / error))
 
 
@@ -191,6 +192,8 @@ def _chance(n: int, place: int, controls: int, beyond: int) -> float:
 
     The order of the distances of equal pairs and control is any, with the same probability; their signs are coins.
     """
+    from scipy import special
+
     # of the pairs, so many lie no farther out than those of the control
     chances = [(nearer, _comes_before(nearer, beyond, n, controls)) for nearer in range(place + 1)]
     both = sum(chance * float(special.bdtrc(n - place - 1, n - nearer, 0.5)) for nearer, chance in chances)

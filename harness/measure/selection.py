@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _SAME = 1e-9  # relative: numbers of a file and of a run that mean the same
 
@@ -17,6 +19,7 @@ _SAME = 1e-9  # relative: numbers of a file and of a run that mean the same
 def matching(table: pd.DataFrame, where: Mapping[str, Any]) -> pd.DataFrame:
     """The rows whose leaves have these values, or one of these where there is a list.
 
+    >>> import pandas as pd
     >>> table = pd.DataFrame({"count": [5, 5, 50], "algorithm": ["grid", "tree", "grid"]})
     >>> matching(table, {"count": 5, "algorithm": ["grid", "tree"]}).index.tolist()
     [0, 1]
@@ -73,12 +76,14 @@ def tied(table: pd.DataFrame, leaf: str, to: str, swept: Sequence[str]) -> bool:
 
     A derived leaf, which is not swept, is tied to every leaf that settles it, as a mesh settles its faces.
     """
+    from pandas.api.types import is_numeric_dtype
+
     pairs = table[[leaf, to]].drop_duplicates()
     follows, settles = not pairs[to].duplicated().any(), not pairs[leaf].duplicated().any()
     if to not in swept:
         return bool(settles)
     # The lists of a zip block may repeat a number; a name that repeats is a method with points of its own
-    return bool(follows and (settles or pd.api.types.is_numeric_dtype(table[leaf])))
+    return bool(follows and (settles or is_numeric_dtype(table[leaf])))
 
 
 def grouped(table: pd.DataFrame, leaves: Sequence[str]) -> Iterator[tuple[dict[str, Any], pd.DataFrame]]:

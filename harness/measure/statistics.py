@@ -3,6 +3,9 @@
 Intervals of medians come from order statistics and so ask nothing of the noise but independence. With five repeats they
 are the range, which covers the true median with probability 1 - 2/2^5 = 93.75 %; fewer repeats have a range and no
 interval. Nothing here is random: the same values give the same numbers.
+
+scipy is imported by what calls it: its `special` takes a third of a second, which a sweep that judges nothing need not
+spend, and its `stats` as long as a small report.
 """
 
 from __future__ import annotations
@@ -11,10 +14,10 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special  # scipy.stats takes as long to import as a small report to write
 
 CONFIDENCE = 0.95
 FEWEST_FOR_INTERVAL = 5
@@ -27,7 +30,7 @@ FEWEST_FOR_EXPONENT = 3
 
 _MEDIAN_TO_MEAN = math.pi / 2.0  # variance of a median to that of a mean, of normal noise
 _CONSTANT = 1e-12  # what varies by less, relatively, varies by rounding
-_SCALED = 1.0 / float(special.ndtri(0.75))  # makes a median absolute deviation a standard deviation of normal noise
+_SCALED = 1.0 / NormalDist().inv_cdf(0.75)  # makes a median absolute deviation a standard deviation of normal noise
 
 
 @dataclass(frozen=True)
@@ -241,6 +244,8 @@ def _slope_interval(
 
 def _is_no_power_law(residuals: NDArray[np.float64], repeats: NDArray[np.float64]) -> bool:
     """Whether medians lie farther off a line than their own noise explains, by an F test at 1 %."""
+    from scipy import special
+
     n, k = repeats.shape
     # what slows a whole repeat moves its line and bends none
     noise = (repeats - repeats.mean(axis=1, keepdims=True)).var(axis=0, ddof=1) / n
@@ -264,6 +269,8 @@ def _by_repeat(samples: Mapping[float, Sequence[float]], xs: Collection[float]) 
 @lru_cache(maxsize=256)
 def _student(freedom: int) -> float:
     """How many standard errors an interval reaches to either side."""
+    from scipy import special
+
     return float(special.stdtrit(freedom, (1.0 + CONFIDENCE) / 2.0))
 
 
@@ -289,6 +296,8 @@ def geometric_mean(values: ArrayLike) -> float:
 @lru_cache(maxsize=256)
 def interval_place(n: int) -> tuple[int, float]:
     """Of five values or more, the place k of those that bound the median, x[k] and x[n - 1 - k], and their coverage."""
+    from scipy import special
+
     # P(fewer than k + 1 of n values lie below the median) is binomial; both sides may miss half of 5 %
     enough = next(k for k in range(n + 1) if special.bdtr(k, n, 0.5) >= (1.0 - CONFIDENCE) / 2.0)
     place = max(0, enough - 1)

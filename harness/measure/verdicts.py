@@ -13,9 +13,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any, Literal
 
 from harness.measure.limits import Criterion, Limits, Outcome, declared, leaves_text, limits
 from harness.measure.metrics import METRICS
@@ -23,6 +21,9 @@ from harness.measure.noise import Control
 from harness.measure.number_text import interval_text, number_text
 from harness.measure.selection import grouped, matching, plain, tied, values, varying
 from harness.measure.statistics import CONFIDENCE, FEWEST_FOR_INTERVAL, Summary, fit_exponent, paired_ratio, summary
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Kind = Literal["expectation", "claim"]
 
@@ -223,6 +224,8 @@ def _exponents(basis: _Basis, leaf: str) -> list[GroupVerdict]:
 
 
 def _exponent(basis: _Basis, leaf: str, where: dict[str, Any], finished: pd.DataFrame) -> GroupVerdict:
+    import pandas as pd
+
     samples: dict[float, list[float]] = defaultdict(list)
     for x, y in zip(pd.to_numeric(finished[leaf], errors="coerce"), finished[basis.metric], strict=True):
         samples[float(x)].append(float(y))
@@ -247,6 +250,8 @@ def _ratios(basis: _Basis, base: Mapping[str, Any]) -> tuple[list[GroupVerdict],
 
     Points without a partner are left out. Returns the verdicts and all the runs that were compared.
     """
+    import pandas as pd
+
     elsewhere = {leaf: value for leaf, value in basis.criterion.where.items() if leaf not in base}
     partners = matching(basis.runs, {**elsewhere, **base})
     points = basis.chosen[~basis.chosen["point"].isin(partners["point"])]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from importlib import import_module
 from typing import Any, cast
 
 import numpy as np
@@ -96,6 +97,7 @@ _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 
 
 def _ask_nobody(name: MethodName) -> None:
+    import_module("harness.backends.rotations")  # half a second which each run would spend once it asks a library
     scene, law, method = two_bodies(name.shape), MotionLaw(0.6, 0.3, "none"), Native(name)
     plan, nobody = method.plan(scene, law), cast(Any, _Nobody())
     near, impacts = NativeNearPairs(nobody, scene, 1.0), NativeImpacts(nobody, scene)

@@ -8,13 +8,12 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-from harness.backends.registry import names
+from harness.backends import registry
 from harness.backends.statement import missing
 from harness.errors import InputError, NotInstalledError, Problem
 from harness.experiment.experiment import Experiment, Point
 from harness.experiment.files import find_experiments
-from harness.experiment.load import load
-from harness.experiment.messages import listed, near, shown
+from harness.experiment.load import Names, load
 from harness.measure.metrics import METRICS, ON_DEMAND
 from harness.methods.stages import StageError
 from harness.scene.mesh import NO_HULL, Mesh
@@ -63,6 +62,11 @@ def prepare(
     return experiments, meshes
 
 
+def known_names() -> Names:
+    """The names of all backends that are declared, installed or not, and of all metrics."""
+    return Names(registry.names(), METRICS)
+
+
 def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object]) -> Prepared:
     """As `prepare`, but returns what is wrong beside what is right.
 
@@ -74,9 +78,10 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     loaded: list[Experiment] = []
     problems: list[Problem] = []
     lacking: list[Problem] = []
+    names = known_names()
     for path in find_experiments(paths):
         try:
-            loaded.append(load(path, overrides))
+            loaded.append(load(path, overrides, names))
         except NotInstalledError as error:
             lacking += error.problems
         except InputError as error:
@@ -84,7 +89,11 @@ def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object
     meshes, broken = _open_files(loaded)
     valid = []
     for experiment in loaded:
-        found = [*_names(experiment), *_file_problems(experiment, meshes, broken), *_namesakes(experiment, loaded)]
+        found = [
+            *_without_backends(experiment),
+            *_file_problems(experiment, meshes, broken),
+            *_namesakes(experiment, loaded),
+        ]
         found = found or list(_forced(experiment, meshes))
         problems += sorted(found, key=lambda problem: (problem.line or 0, problem.column or 0))
         if not found:
@@ -168,23 +177,12 @@ def _forced(experiment: Experiment, meshes: Opened) -> Iterator[Problem]:
             continue
 
 
-def _names(experiment: Experiment) -> Iterator[Problem]:
-    """Names that only other rooms know: of metrics and of backends."""
-    metrics: list[tuple[tuple[str | int, ...], str]] = []
-    for section, rows in (("expect", experiment.expect), ("claims", experiment.claims)):
-        metrics += [((section, place, "metric"), row.metric) for place, row in enumerate(rows)]
-    if experiment.report is not None:
-        metrics += [(("report", "y", place), name) for place, name in enumerate(experiment.report.y)]
-    for path, name in metrics:
-        if name not in METRICS:
-            yield experiment.problem(path, f"unknown metric {shown(name)}{near(name, METRICS)}")
-    backends = names()
+def _without_backends(experiment: Experiment) -> Iterator[Problem]:
+    """Backends that are not installed, where there is no other.
+
+    Of several they are passed over.
+    """
     named = list(dict.fromkeys(point.engine.backend for point in experiment.points))
-    for name in named:
-        if name not in backends:
-            hint = near(name, backends) or f"; there are {listed(backends)}"
-            yield experiment.leaf_problem("backend", name, f"unknown backend {shown(name)}{hint}")
-    # of several backends those that are not installed are passed over; without any there is nothing to do
     lacking = {name: why for name in named if (why := missing(name)) is not None}
     if named and len(lacking) == len(named):
         for name, why in lacking.items():

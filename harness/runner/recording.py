@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -16,9 +16,7 @@ from harness.runner.contact_points import contact_points
 from harness.runner.point import is_stepped, law_of
 from harness.scene.scene import Scene
 from harness.store.recording import NearLines, Recording, Surface
-
-if TYPE_CHECKING:
-    import pandas as pd
+from harness.store.records import RunRecord
 
 # A sweep records a scene of at most this many bodies, hits and lines between near bodies, whose run took at most this
 # long (s): all of an experiment's page together, and of a default sweep a few seconds.
@@ -77,13 +75,13 @@ def _near_lines(answers: NearAnswers, law: MotionLaw, scene: Scene) -> NearLines
     return NearLines(frames, np.tile(found.pairs, (law.frames, 1)), np.tile(found.points, (law.frames, 1, 1)))
 
 
-def worth_recording(bodies: Mapping[str, int], runs: pd.DataFrame) -> str | None:
+def worth_recording(bodies: Mapping[str, int], runs: Iterable[RunRecord]) -> str | None:
     """The point of an experiment that its page should replay: of those that are small enough, the fullest scene.
 
     Parameters
     ----------
     bodies : how many each of its points has, in order, by key; of two equally full ones the first is chosen
-    runs : its run table; the conditions of a run do not matter, its time does
+    runs : of it; the conditions of a run do not matter, its time does
 
     Returns
     -------
@@ -91,20 +89,19 @@ def worth_recording(bodies: Mapping[str, int], runs: pd.DataFrame) -> str | None
 
     Examples
     --------
-    >>> import pandas as pd
-    >>> runs = pd.DataFrame({"point": ["few", "many"], "status": "ok", "events": 9, "run_seconds": 0.1})
+    >>> metrics = {"events": 9, "run_seconds": 0.1}
+    >>> runs = [RunRecord("e", point, 0, "ok", None, 0, True, {}, metrics) for point in ("few", "many")]
     >>> worth_recording({"few": 5, "many": 50}, runs)
     'many'
     """
-    if not {"events", "run_seconds"}.issubset(runs.columns):
-        return None
-    small = runs[
-        (runs["status"] == "ok")
-        & (runs["point"].map(bodies) <= MOST_BODIES)
-        & (runs["events"] <= MOST_HITS)
-        & (runs["run_seconds"] <= MOST_SECONDS)
-    ]
-    if "near_pairs" in small.columns:
-        small = small[small["near_pairs"].fillna(0.0) <= MOST_LINES]
-    small_enough = set(small["point"])
+    small_enough = {
+        run.point for run in runs if run.status == "ok" and bodies[run.point] <= MOST_BODIES and _is_short(run.metrics)
+    }
     return max((key for key in bodies if key in small_enough), key=lambda key: bodies[key], default=None)
+
+
+def _is_short(metrics: Mapping[str, float]) -> bool:
+    """Whether a run reports so little that a page can show it; what is not a number is not little."""
+    most = {"events": MOST_HITS, "run_seconds": MOST_SECONDS}
+    short = all(metrics.get(name, math.nan) <= limit for name, limit in most.items())
+    return short and not metrics.get("near_pairs", 0.0) > MOST_LINES

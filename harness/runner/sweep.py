@@ -200,6 +200,8 @@ def sweep(
                 database.add_recording(finished.job.key, finished.report.recording)
     refused: set[tuple[str, int]] = set()
     for experiment in experiments:
+        if not (experiment.expect or experiment.claims):  # a table takes half a second of imports
+            continue
         table = runs(database.path, [experiment.name])
         known = _controls(database.path, experiment.name)
         expectations = [_verdict(row, table, experiment, "expectation", known) for row in experiment.expect]
@@ -244,7 +246,7 @@ def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], data
         if experiment.measure.tier == "long" or database.recorded(points):
             continue
         bodies = {key: body_count(point) for key, point in points.items()}
-        key = worth_recording(bodies, runs(database.path, [experiment.name]))
+        key = worth_recording(bodies, run_records(database.path, [experiment.name]))
         if key is not None:
             jobs.setdefault(key, Job(experiment, points[key], key, 0, recorded=True))
     return list(jobs.values())

@@ -11,9 +11,7 @@ import sqlite3
 from collections import defaultdict
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from harness.store.history import reading
 from harness.store.records import (
@@ -26,6 +24,9 @@ from harness.store.records import (
     VerdictKind,
     VerdictRow,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # What is said of a row of `expect` or `claims` that the sweep did not come to judge.
 NOT_JUDGED = "not judged yet: the sweep has not come to its end"
@@ -64,6 +65,8 @@ def run_table(records: Iterable[RunRecord]) -> pd.DataFrame:
         parameter, and a float column a metric, NaN where a run does not report it. Leaves that are lists or mappings
         are their JSON text, so that they can be grouped by.
     """
+    import pandas as pd
+
     records = list(records)
     parameters = list(dict.fromkeys(leaf for record in records for leaf in record.parameters))
     metrics = list(dict.fromkeys(name for record in records for name in record.metrics))

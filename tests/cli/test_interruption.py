@@ -10,8 +10,9 @@ import time
 import pytest
 
 from harness.cli import validate
-from harness.cli.interruption import SIGNALS, Interrupted, heeding_signals
+from harness.cli.interruption import Interrupted, heeding_signals
 from harness.cli.main import main
+from harness.cli.silent_end import SIGNALS
 
 TWICE = """
 import os, signal, sys, time
@@ -90,9 +91,20 @@ def test_a_command_runs_in_any_thread():
 @pytest.mark.parametrize("moment", ["while it is imported", "when it has ended"])
 def test_a_signal_before_and_after_a_command_ends_it_without_a_word(number, code, moment):
     program = (
-        "from harness.cli.interruption import end_without_a_word, heeding_signals\n"
+        "from harness.cli.interruption import heeding_signals\n"
+        "from harness.cli.silent_end import end_without_a_word\n"
         + ("end_without_a_word()" if moment == "while it is imported" else "with heeding_signals(last=True): pass")
         + f"\nimport os, time; os.kill(os.getpid(), {int(number)}); time.sleep(60)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stderr) == (code, "")
+
+
+def test_hardly_anything_is_imported_before_signals_are_heeded():
+    """A signal that comes meanwhile shows a trace."""
+    program = (
+        "import os, re, signal, sys; before = set(sys.modules); import harness.__main__; "
+        "print(*sorted(set(sys.modules) - before))"
+    )
+    done = subprocess.run([sys.executable, "-S", "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["__future__", "harness", "harness.__main__", "harness.cli", "harness.cli.silent_end"]

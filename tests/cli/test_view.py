@@ -3,8 +3,14 @@
 import base64
 import json
 import re
+import signal
+import subprocess
+import sys
+import urllib.error
+import urllib.request
 
 import numpy as np
+import psutil
 import pytest
 
 from harness.cli.main import main
@@ -59,3 +65,25 @@ def test_a_run_that_cannot_be_exits_1_and_a_file_that_cannot_be_written_2(file, 
     (file.parent / "taken").write_text("")
     assert main(["view", str(file), "--out", "taken/page.html"]) == 2
     assert "give another file with --out" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 0), (signal.SIGKILL, -signal.SIGKILL)])
+def test_a_live_server_ends_with_its_command_and_leaves_no_process(file, number, code):
+    command = [sys.executable, "-m", "harness", "view", "--live", str(file)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as view:
+        try:
+            address = view.stdout.readline().split()[0]
+            with urllib.request.urlopen(f"{address}run?speed=2") as answer:
+                assert "row" in json.load(answer)
+            started = psutil.Process(view.pid).children(recursive=True)
+            assert started
+            view.send_signal(number)
+            assert view.wait(timeout=60) == code
+            assert view.stderr.read() == ""
+        finally:
+            view.kill()
+    _, left = psutil.wait_procs(started, timeout=20)
+    assert left == []
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(address)

@@ -83,4 +83,13 @@ def hulls(one, other):
     """The squared distance of the hulls of a few points."""
     if inside(one, other[0]) or inside(other, one[0]):
         return Fraction(0)
-    return min(triangles(p, q) for p in combinations(one, 3) for q in combinations(other, 3))
+    return min(triangles(p, q) for p in sides(one) for q in sides(other))
+
+
+def sides(points):
+    """Of all triangles of some points those with none of the points on one side: hulls apart are nearest there."""
+    for a, b, c in combinations(points, 3):
+        normal = cross(minus(b, a), minus(c, a))
+        heights = [dot(minus(x, a), normal) for x in points]
+        if min(heights) >= 0 or max(heights) <= 0:
+            yield a, b, c

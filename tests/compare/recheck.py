@@ -35,6 +35,12 @@ def world(body):
     ]  # fmt: skip
 
 
+def as_integers(*sides):
+    """Points in units so small that all are whole: what is asked of them asks for no unit, and integers are quicker."""
+    unit = lcm(*(part.denominator for points in sides for point in points for part in point))
+    return [[[int(part * unit) for part in point] for point in points] for points in sides]
+
+
 def proven(row):
     """Whether the certificate of a row proves what it says of touching, or that a gap was told wrong."""
     if "query" in row:
@@ -43,7 +49,7 @@ def proven(row):
     if row["shape"] == "sphere":
         squared = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(*(b["position"] for b in bodies), strict=True))
         return (squared <= (sum(Fraction(body["size"]) for body in bodies) / 2) ** 2) == row["touching"]
-    one, other = map(world, bodies)
+    one, other = as_integers(*map(world, bodies))
     if row["touching"]:
         return have_common_point(proof, bodies, one, other)
     if row["shape"] == "hull":

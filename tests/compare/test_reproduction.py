@@ -1,10 +1,13 @@
 """What `--save` writes shows the defect by itself, with no more bodies than it takes."""
 
+import errno
 import json
+import os
 
 import pytest
 
 from harness.cli.main import main
+from harness.compare import reproduction
 from harness.experiment.load import load
 
 EXPERIMENT = """
@@ -35,3 +38,27 @@ def test_a_saved_disagreement_is_found_again(name, bodies, defective, tmp_path, 
         assert len(load(file).points[0].scene.bodies) == bodies
         assert main(["compare", file, "--json"]) == 1
         assert json.loads(capsys.readouterr().out)["cases"][0]["wrong"] == name
+
+
+@pytest.mark.slow
+def test_what_is_found_is_said_though_it_cannot_be_saved(defective, tmp_path, capsys, monkeypatch):
+    def full(path, content):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+
+    (tmp_path / "three.yaml").write_text(EXPERIMENT)
+    compare = ["compare", str(tmp_path / "three.yaml"), "--backends", f"fcl,{defective('swaps')}", "--json"]
+    monkeypatch.setattr(reproduction, "write_whole", full)
+    assert main([*compare, "--save", str(tmp_path / "cases")]) == 2
+    said = capsys.readouterr()
+    assert {(case["wrong"], case["file"]) for case in json.loads(said.out)["cases"]} == {("swaps", None)}
+    assert said.err.splitlines()[-1].endswith(
+        "cannot be written: No space left on device; give another folder with --save"
+    )
+
+
+def test_a_folder_for_cases_that_cannot_be_is_refused_before_the_work(tmp_path, capsys):
+    (tmp_path / "three.yaml").write_text(EXPERIMENT)
+    assert main(["compare", str(tmp_path / "three.yaml"), "--save", str(tmp_path / "three.yaml")]) == 2
+    assert capsys.readouterr().err.endswith(
+        "three.yaml: cannot be written: File exists; give another folder with --save\n"
+    )

@@ -84,11 +84,10 @@ JUNK = st.recursive(
     ),
     max_leaves=15,
 )
+LEAVES_OF_JUNK = st.dictionaries(st.sampled_from(sorted(LEAVES)), JUNK, max_size=5)
 FILE_OF_JUNK = st.dictionaries(st.sampled_from([*KEYS, "titel"]), JUNK) | st.fixed_dictionaries(
-    {key: st.dictionaries(st.sampled_from(sorted(LEAVES)), JUNK) for key in ("scene", "motion", "engine", "sweep")},
-    optional={
-        key: st.lists(st.dictionaries(st.sampled_from(sorted(LEAVES)), JUNK)) for key in ("zip", "exclude", "include")
-    },
+    dict.fromkeys(("scene", "motion", "engine", "sweep"), LEAVES_OF_JUNK),
+    optional={key: st.lists(LEAVES_OF_JUNK, max_size=3) for key in ("zip", "exclude", "include")},
 )
 
 

@@ -56,7 +56,7 @@ def test_validate_says_everything_about_every_file(capsys: pytest.CaptureFixture
     Path("good.yaml").write_text(GOOD)
     Path("bad.yaml").write_text(GOOD + "motion: {dt: 0}\ndt: 3\n")
     Path("names.yaml").write_text(
-        GOOD + "engine: {backend: pybulet, algorithm: native}\nexpect: [{metric: energy_drfit, at_most: 1}]\n"
+        GOOD + "engine: {backend: pybulet}\nexpect: [{metric: energy_drfit, at_most: 1}]\n"
         "report: {y: [escaped, pair_secnds]}\n"
     )
     assert main(["validate", "good.yaml", "bad.yaml", "names.yaml"]) == 2

@@ -110,7 +110,7 @@ def test_a_changed_file_is_read_again_and_only_that(folder, said, monkeypatch):
     from harness.experiment.load import load
 
     loaded = []
-    monkeypatch.setattr("harness.runner.preparation.load", lambda path, set: loaded.append(path) or load(path, set))
+    monkeypatch.setattr("harness.runner.preparation.load", lambda path, *more: loaded.append(path) or load(path, *more))
     put(folder / "experiments" / "a.yaml", TEXT.replace("repeats: 2", "repeats: 3").encode())
     assert said("validate", "experiments")[1].out.splitlines() == ["a: 2 points, 6 runs", "b: 2 points, 4 runs"]
     assert loaded == [Path("experiments/a.yaml")]

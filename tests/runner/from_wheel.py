@@ -35,7 +35,7 @@ MADE = ("experiments/mine.yaml", "results/results.db", "results/report/index.htm
 
 def install(folder: Path) -> Path:
     """A virtual environment with the wheel of this program, which sees the libraries of this one; its Python."""
-    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps"]
     subprocess.run([*pip, "-w", str(folder / "wheels"), str(SOURCE)], check=True)
     (wheel,) = (folder / "wheels").glob("*.whl")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder / "venv")], check=True)

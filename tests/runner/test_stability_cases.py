@@ -27,6 +27,7 @@ SHORTER = {
     "inelastic-collapse": {"duration": 4},
     "long-step": {"duration": 20},
     "no-room": {"duration": 0.01},
+    "query-fast-spin": {"duration": 0.2},
     "rattling": {"dt": 0.1},
     "size-ratio": {"duration": 1, "count": 100},
     "sizes": {"duration": 0.2, "shape": ["sphere", "hull"]},

@@ -224,6 +224,12 @@ def test_results_in_a_read_only_folder_can_be_read(read_only: Path) -> None:
     [
         ("UPDATE point SET parameters = '{'", "point.parameters is no JSON object"),
         ("UPDATE point SET parameters = '[1]'", "point.parameters is no JSON object"),
+        ("UPDATE run SET conditions = '[1]'", "run.conditions is no JSON object"),
+        ("""UPDATE run SET conditions = '{"load": "high"}'""", "run.conditions has a value of another kind"),
+        ("""UPDATE point SET plan = '{"stages": 3}'""", "point.plan has no stages as it must be"),
+        ("""UPDATE point SET plan = '{"stages": [3]}'""", "point.plan has a value of another kind in stages"),
+        ("""UPDATE point SET plan = '{"stages": [{}]}'""", "point.plan has no kept in stages"),
+        ("""UPDATE experiment SET specification = '{"expect": 3}'""", "experiment.specification has no expect"),
         ("UPDATE metric SET value = 'abc'", "metric.value is no number"),
         ("UPDATE run SET repeat = 'abc'", "run.repeat is no number"),
         ("UPDATE run SET sweep = 77", "a row of run refers to a row of sweep that is not there"),

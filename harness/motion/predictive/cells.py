@@ -157,6 +157,32 @@ def gather_block(cells: Cells, grid: Record, block: Block, found: Indices, n: in
 
 
 @step
+def gather_wide(cells: Cells, grid: Record, block: Block, found: Indices) -> int:
+    """List the spheres of a block of cells that hold several each: the first of every cell, the second of every cell...
+
+    How many a cell holds is at random, and the branch at its end would be mispredicted.
+    """
+    empty = cells.following.size - 1
+    n = 0
+    for x in range(block.from_x, block.to_x + 1):
+        for y in range(block.from_y, block.to_y + 1):
+            cell = cell_number(grid, x, y, 0)
+            for z in range(block.from_z, block.to_z + 1):
+                p = cells.heads[np.uintp(cell + z)]
+                found[np.uintp(n)] = p
+                n += p != empty
+    begin = 0
+    while begin < n:
+        end = n
+        for m in range(begin, end):
+            p = cells.following[found[np.uintp(m)]]
+            found[np.uintp(n)] = p
+            n += p != empty
+        begin = end
+    return n
+
+
+@step
 def gather_ball(cells: Cells, grid: Record, x: float, y: float, z: float, reach: float, found: Indices, n: int) -> int:
     """Append the spheres of all cells that come within `reach` of a point."""
     for ix in range(index(grid, 0, x - reach), index(grid, 0, x + reach) + 1):

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
+import numpy as np
+
 from harness.kernel import step
-from harness.motion.predictive.cells import AROUND, block, gather_block, insert_by_position, remove
+from harness.motion.predictive.cells import AROUND, block, gather_wide, insert_by_position, remove
 from harness.motion.predictive.ignored import without_ignored
 from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
 from harness.prefetch import prefetch
@@ -26,29 +28,32 @@ def renew(world: World, k: int) -> bool:
     members = lists.members
     own, place = members[k], spheres.schedule[k]
     for m in range(own.count):
+        prefetch(members, own.who[min(m + PREFETCHED, own.count - 1)])
         remove_neighbour(members[own.who[m]], k)
     for axis in range(3):
         lists.anchors[k, axis] = spheres.motions[k].position[axis]
     remove(cells, spheres.schedule, k)
     insert_by_position(cells, spheres, k)
     around = block(cells.grids[0], place.cell[0], place.cell[1], place.cell[2], AROUND)
-    count = without_ignored(world, k, found, gather_block(cells, cells.grids[0], around, found, 0))
+    count = without_ignored(world, k, found, gather_wide(cells, cells.grids[0], around, found))
     degree = 0
-    room = True
-    for m in range(count):
-        p = found[m]
-        prefetch(lists.anchors, found[min(m + PREFETCHED, count - 1)])
-        if p != k and near(lists, k, p, world.rules.skin):
-            theirs = members[p]
-            if degree == CAPACITY or theirs.count == CAPACITY:
-                room = False
-                break
-            own.who[degree] = p
-            degree += 1
-            theirs.who[theirs.count] = k
-            theirs.count += 1
-    own.count = degree
-    return room
+    for m in range(count):  # who is near is at random: keeping each without asking spares the mispredicted branch
+        p = found[np.uintp(m)]
+        prefetch(lists.anchors, found[np.uintp(min(m + PREFETCHED, count - 1))])
+        found[np.uintp(degree)] = p
+        degree += (p != k) & near(lists, k, p, world.rules.skin)
+    own.count = min(degree, CAPACITY)
+    for m in range(own.count):
+        p = found[np.uintp(m)]
+        prefetch(members, found[np.uintp(min(m + PREFETCHED, own.count - 1))])
+        theirs = members[p]
+        if theirs.count == CAPACITY:
+            own.count = m
+            return False
+        own.who[m] = p
+        theirs.who[theirs.count] = k
+        theirs.count += 1
+    return degree <= CAPACITY
 
 
 @step

@@ -129,20 +129,15 @@ EVENT_STATE = np.dtype(
     align=True,
 )
 
-# Candidates that are solved together, as columns. Their number is a constant, so that the compiler sees that columns do
-# not overlap.
-LANES = 64
-_COLUMNS = ("gap_x", "gap_y", "gap_z", "velocity_x", "velocity_y", "velocity_z", "reach", "due")
-CANDIDATE_OFFSETS = {name: place * 8 * LANES for place, name in enumerate(_COLUMNS)}
-CANDIDATE_OFFSETS["due_bits"] = CANDIDATE_OFFSETS["due"]  # read as integers
-CANDIDATE_OFFSETS["own"] = len(_COLUMNS) * 8 * LANES  # the sphere that asks: a MOTION whose radius is taken negative
+# Candidates are solved four at a time, and their times stand in so many lanes until the next.
+FOUR, LANES = 4, 64
 CANDIDATES = np.dtype(
-    {
-        "names": [*CANDIDATE_OFFSETS],
-        "formats": [*[(np.float64, LANES)] * len(_COLUMNS), (np.int64, LANES), (np.float64, 8)],
-        "offsets": [*CANDIDATE_OFFSETS.values()],
-        "itemsize": len(_COLUMNS) * 8 * LANES + LINE,
-    }
+    [
+        ("due", np.float64, LANES),  # s, when it touches each
+        ("earliest", np.float64),  # s, of these
+        ("tied", np.int64),  # whether some may be due at one time, 0: none is
+    ],
+    align=True,
 )
 
 # The neighbours of a sphere: most lists fill one cache line, and none more than two.
