@@ -33,7 +33,8 @@ def _content(results: Results) -> Content | None:
 
 def _summary(part: TruthPart) -> list[str]:
     """Of everyone who was asked, a sentence."""
-    return [_sentence(engine, found) for engine in part.engines if (found := part.count(engine, ALL)) is not None]
+    counted = {part.heading(engine): part.count(engine, ALL) for engine in part.engines}
+    return [_sentence(engine, found) for engine, found in counted.items() if found is not None]
 
 
 def _sentence(engine: str, found: Mapping[str, Any]) -> str:
@@ -47,7 +48,7 @@ def _sentence(engine: str, found: Mapping[str, Any]) -> str:
 
 def _table(part: TruthPart) -> Table:
     rows = tuple(
-        _row(engine, family, found)
+        _row(part.heading(engine), family, found)
         for engine in part.engines
         for family in [*part.families, ALL]
         if (found := part.count(engine, family)) is not None
@@ -87,7 +88,8 @@ def _bad(count: int) -> Entry:
 def _notes(part: TruthPart) -> list[str]:
     """Who could not be asked, or not about everything, and what failed."""
     found = []
-    for label, asked in part.asked.items():
+    for engine, asked in part.asked.items():
+        label = part.heading(engine)
         if asked["problem"]:
             found.append(f"{label} was not asked: {asked['problem']}")
             continue
