@@ -88,7 +88,10 @@ def main():
     print("| bodies | spin, rad/s | own, µs a pair | rapier3d, µs a pair | ratio | rapier3d late or without a hit |")
     print("|---|---|---|---|---|---|")
     for shape, mesh, spins, count, asked in CASES:
-        faces = mesh.partition("-")[2].partition(".")[0]
+        surface = harness.Body(mesh).mesh
+        kind = f"mesh of {len(surface.faces)} faces"
+        if shape == "hull":
+            kind = f"hull of {len(surface.hull.vertices)} vertices"
         for spin in spins:
             times, took = own(mesh, shape, motions(count, spin))
             cells = ["", "", ""]
@@ -99,7 +102,7 @@ def main():
                 late = int((theirs > times[:asked] + 1e-3).sum())
                 cells = [f"{dear * 1e6:.4g}", f"{dear / took:.3g}", f"{late} of {asked}"]
                 cells[2] += f", {silent} unanswered" if silent else ""
-            print(f"| {shape} of {faces} faces | {spin:g} | {took * 1e6:.3g} | {' | '.join(cells)} |", flush=True)
+            print(f"| {kind} | {spin:g} | {took * 1e6:.3g} | {' | '.join(cells)} |", flush=True)
 
 
 if __name__ == "__main__":
