@@ -97,7 +97,7 @@ def _sure(field: Field) -> str:
     if len(field.ranked) == 1:
         return "the only one measured here that is right"
     others = len(field.ranked) - 1
-    return "told from the other one" if others == 1 else f"told from all of the other {others}"
+    return f"told apart from {('the other one', 'both others')[others - 1] if others < 3 else f'all {others} others'}"
 
 
 def _second(field: Field) -> str:
