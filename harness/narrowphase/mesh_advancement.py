@@ -20,8 +20,9 @@ import numpy as np
 from harness.kernel import kernel, strict_step
 from harness.narrowphase.advancement import time_of_impact
 from harness.narrowphase.clearance_field import ClearanceField, clearance_field, no_field
-from harness.narrowphase.free_flight import Motion, fastest_passing, place, relative_motion, seen_at
-from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart, hull_distance
+from harness.narrowphase.free_flight import Motion, place, seen_at
+from harness.narrowphase.gjk import COLD_START, LEAST_GAP, MARGIN, WarmStart
+from harness.narrowphase.hulls_apart import apart_again
 from harness.narrowphase.motion_bounds import (
     Flight,
     Instant,
@@ -57,8 +58,8 @@ HULL_TOLERANCE = 1e-3
 SLOW = 1000.0
 
 
-# Spells in which hulls overlap, and how far ahead their end is looked for: a way, of the mean size, that is doubled.
-MOST_SPELLS, FIRST_LOOK, MOST_LOOKS = 4, 0.05, 7
+# Spells in which hulls overlap that are searched one by one; what comes after is searched as one.
+MOST_SPELLS = 4
 
 
 class MeshShape(NamedTuple):
@@ -213,39 +214,6 @@ def time_of_mesh_impact(
     time = never if found.verdict == SearchVerdict.NEVER else min(end, begin + (entry + found.time))
     after = MeshWarmStart(hulls.warm_start, found.leaves)
     return MeshImpact(found.verdict, time, found.gap, found.axis, after, steps)
-
-
-@kernel
-def apart_again(
-    hull_a: SupportMap,
-    hull_b: SupportMap,
-    a: Motion,
-    b: Motion,
-    begin: float,
-    end: float,
-    gap: float,
-    start: WarmStart,
-) -> float:
-    """A time (s) at which two hulls are apart by a gap (m), so that what is in them can be searched up to it; the end,
-    if none is found.
-
-    It is looked for ever farther on: bodies that have just parted are in each other's hollows for a moment, and a
-    search through their trees up to when their spheres part takes a fifth more steps.
-    """
-    speed, margin = fastest_passing(a, b), MARGIN * (a.size + b.size)
-    if not speed > 0.0:
-        return end
-    wait = FIRST_LOOK * 0.5 * (a.size + b.size) / speed
-    for _ in range(MOST_LOOKS):
-        if not begin + wait < end:
-            break
-        pose = relative_motion(a, b, begin + wait).pose
-        found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf, 0.0)
-        if found.lower > gap:
-            return begin + wait
-        start = found.warm_start
-        wait *= 2.0
-    return end
 
 
 @kernel
