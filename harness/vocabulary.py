@@ -119,6 +119,21 @@ KNOBS = ("dt", "tolerance")
 """Those of them that trade accuracy for time within one method."""
 
 
+class Abilities(NamedTuple):
+    """What a backend says that it can be asked, as far as is known without importing it; None where that is not said.
+
+    Attributes
+    ----------
+    shapes : that it can hold
+    gap_shapes : those whose gaps it tells, where these are not all of them
+    queries : that its own pipeline answers
+    """
+
+    shapes: tuple[Shape, ...] | None = None
+    gap_shapes: tuple[Shape, ...] | None = None
+    queries: tuple[Query, ...] | None = None
+
+
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
 
 
