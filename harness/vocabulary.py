@@ -112,6 +112,12 @@ REFERENCE_ALGORITHM: ReferenceAlgorithm = "predictive"
 OWN_BACKEND = "fcl"
 """The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
 
+EXACT_FRAMES = f"{OWN_BACKEND}/grid"
+"""The pipeline that is asked of frames, or beside all backends, where any exact one of this program would do."""
+
+LIBRARY_IMPACTS = f"{OWN_BACKEND}/native"
+"""The pipeline of a library that is asked for times of impact where none is named."""
+
 METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages", "dt")
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 
@@ -153,6 +159,25 @@ def algorithms_of(backend: str, query: Query = "collision") -> tuple[str, ...]:
     return tuple(name for name, word in ALGORITHMS.items() if both or word.own == own)
 
 
+class PipelineName(NamedTuple):
+    """A pipeline as a command or a stored comparison names it: a backend, with an algorithm or alone.
+
+    >>> PipelineName.read("fcl/grid")
+    PipelineName(backend='fcl', algorithm='grid')
+    >>> PipelineName.read("pybullet").algorithm is None
+    True
+    """
+
+    backend: str
+    algorithm: str | None = None
+
+    @classmethod
+    def read(cls, text: str) -> PipelineName:
+        """The two parts of a name."""
+        backend, stroke, algorithm = text.partition("/")
+        return cls(backend, algorithm if stroke else None)
+
+
 class MethodName(NamedTuple):
     """What answers a run's question, by name: the noun under which runs, verdicts and ranks of a method are kept.
 
@@ -184,7 +209,7 @@ class MethodName(NamedTuple):
         >>> MethodName.read("fcl", "hull").pipeline, MethodName.read("pybullet", "hull").pipeline
         ('fcl/brute-force', 'pybullet')
         """
-        backend, _, algorithm = pipeline.partition("/")
+        backend, algorithm = PipelineName.read(pipeline)
         return cls(backend, algorithm or algorithms_of(backend)[0], shape, query)
 
     @property
