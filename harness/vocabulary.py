@@ -112,11 +112,32 @@ REFERENCE_ALGORITHM: ReferenceAlgorithm = "predictive"
 OWN_BACKEND = "fcl"
 """The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
 
+EXACT_FRAMES = f"{OWN_BACKEND}/grid"
+"""The pipeline that is asked of frames, or beside all backends, where any exact one of this program would do."""
+
+LIBRARY_IMPACTS = f"{OWN_BACKEND}/native"
+"""The pipeline of a library that is asked for times of impact where none is named."""
+
 METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages", "dt")
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 
 KNOBS = ("dt", "tolerance")
 """Those of them that trade accuracy for time within one method."""
+
+
+class Abilities(NamedTuple):
+    """What a backend says that it can be asked, as far as is known without importing it; None where that is not said.
+
+    Attributes
+    ----------
+    shapes : that it can hold
+    gap_shapes : those whose gaps it tells, where these are not all of them
+    queries : that its own pipeline answers
+    """
+
+    shapes: tuple[Shape, ...] | None = None
+    gap_shapes: tuple[Shape, ...] | None = None
+    queries: tuple[Query, ...] | None = None
 
 
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
@@ -136,6 +157,25 @@ def algorithms_of(backend: str, query: Query = "collision") -> tuple[str, ...]:
     own = backend == OWN_BACKEND
     both = own and query != "collision"
     return tuple(name for name, word in ALGORITHMS.items() if both or word.own == own)
+
+
+class PipelineName(NamedTuple):
+    """A pipeline as a command or a stored comparison names it: a backend, with an algorithm or alone.
+
+    >>> PipelineName.read("fcl/grid")
+    PipelineName(backend='fcl', algorithm='grid')
+    >>> PipelineName.read("pybullet").algorithm is None
+    True
+    """
+
+    backend: str
+    algorithm: str | None = None
+
+    @classmethod
+    def read(cls, text: str) -> PipelineName:
+        """The two parts of a name."""
+        backend, stroke, algorithm = text.partition("/")
+        return cls(backend, algorithm if stroke else None)
 
 
 class MethodName(NamedTuple):
@@ -169,7 +209,7 @@ class MethodName(NamedTuple):
         >>> MethodName.read("fcl", "hull").pipeline, MethodName.read("pybullet", "hull").pipeline
         ('fcl/brute-force', 'pybullet')
         """
-        backend, _, algorithm = pipeline.partition("/")
+        backend, algorithm = PipelineName.read(pipeline)
         return cls(backend, algorithm or algorithms_of(backend)[0], shape, query)
 
     @property

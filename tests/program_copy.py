@@ -52,12 +52,21 @@ class ProgramCopy:
 
     def run(self, *words):
         """What a command prints."""
-        ran = subprocess.run(
+        ran = self._ran(*words)
+        assert ran.returncode == 0, ran.stderr
+        return ran.stdout
+
+    def refused(self, *words):
+        """What a command says that finds its input wrong."""
+        ran = self._ran(*words)
+        assert ran.returncode == 2, ran.stderr
+        return ran.stderr
+
+    def _ran(self, *words):
+        return subprocess.run(
             [sys.executable, "-m", "harness", *map(str, words)],
             cwd=self.folder, env=self.environment, capture_output=True, text=True,
         )  # fmt: skip
-        assert ran.returncode == 0, ran.stderr
-        return ran.stdout
 
     def sweep(self, *experiments):
         """The runs of experiment files, by the name of the experiment, in a fresh database."""

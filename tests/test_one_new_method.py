@@ -94,6 +94,8 @@ def test_a_backend_is_one_file_and_the_version_of_its_package_is_kept(program):
     with closing(sqlite3.connect(program.folder / "results.db")) as database:
         ((packages,),) = database.execute("select packages from sweep")
     assert "hypothesis" in json.loads(packages)
+    program.add("hulls.yaml", experiment("distances", "native", "cube.off").replace("sphere", "hull"))
+    assert "hulls.yaml:3:16: backend distances has no shape hull, only sphere" in program.refused("plan", "hulls.yaml")
 
 
 def test_a_broad_phase_is_one_file_and_its_word(compiled_program):

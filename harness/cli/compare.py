@@ -154,20 +154,20 @@ def _chosen(text: str | None) -> tuple[str, ...]:
     """The backends and methods that `--backends` names."""
     from harness.backends.registry import names
     from harness.experiment.messages import listed, near, shown
-    from harness.vocabulary import ALGORITHMS, QUERIES, algorithms_of
+    from harness.vocabulary import ALGORITHMS, QUERIES, PipelineName, algorithms_of
 
     if text is None:
         return ()
     chosen = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
     for name in chosen:
-        backend, stroke, algorithm = name.partition("/")
+        backend, algorithm = PipelineName.read(name)
         if backend not in names():
             hint = near(backend, names()) or f"; there are {listed(names())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
         # of queries other than collision also the backend's own; which experiments ask is known when they are read
         possible = [word for query in QUERIES for word in algorithms_of(backend, query) if ALGORITHMS[word].stepped]
         possible = list(dict.fromkeys(possible))
-        if stroke and algorithm not in possible:
+        if algorithm is not None and algorithm not in possible:
             hint = near(algorithm, possible) or (f"; there are {listed(possible)}" if possible else "")
             raise InputError(f"--backends: {backend} cannot be asked at poses with algorithm {shown(algorithm)}{hint}")
     if len(chosen) < 2:

@@ -30,10 +30,10 @@ from harness.cli.crosscheck import (
 from harness.cli.surveying import SWEPT_SECONDS, engines, survey_key, surveyed
 from harness.compare.budget import Budget
 from harness.compare.document import Known
-from harness.compare.event_audit import FRAMES
 from harness.compare.outcome import TIMED, Comparison, Failure
 from harness.experiment.experiment import Experiment
 from harness.store.database import Database
+from harness.vocabulary import EXACT_FRAMES
 from harness.workers import shared_out, usable_cores
 
 # s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
@@ -115,7 +115,7 @@ def _tasks(experiment: Experiment, meshes: Meshes, database: Database, done: Col
         return
     involved = {name for pair in left for name in pair}
     asked = {query: tuple(name for name in named if name in involved) for query, named in names.items()}
-    asked_events = tuple(name for name in events if (FRAMES, name) in left)
+    asked_events = tuple(name for name in events if (EXACT_FRAMES, name) in left)
     said = dict.fromkeys((*(name for named in asked.values() for name in named), *asked_events))
     digests = database.history.values("event_digest", keys_of(experiment, meshes))
     make = partial(_cross_check, experiment, meshes, asked, asked_events, left, digests)

@@ -21,7 +21,7 @@ from harness.backends.statement import missing
 from harness.compare.budget import Budget
 from harness.compare.comparison import Found, compare_all
 from harness.compare.document import Known, Reduced, document, reduced, shown_case
-from harness.compare.event_audit import FRAMES, audit_events
+from harness.compare.event_audit import audit_events
 from harness.compare.free_running import digest_when_asked, run_both
 from harness.compare.hard_questions import hard_questions
 from harness.compare.outcome import Comparison
@@ -38,13 +38,13 @@ from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 from harness.scene.scene_files import Opened
-from harness.vocabulary import MethodName, Query, algorithms_of
+from harness.vocabulary import EXACT_FRAMES, LIBRARY_IMPACTS, MethodName, PipelineName, Query, algorithms_of
 
 DEFAULT: Mapping[Query, tuple[str, str]] = {
     "collision": ("fcl", "pybullet"),
     "tolerance": ("fcl", "pybullet"),
     "distance": ("fcl", "pybullet"),
-    "impact": ("fcl", "fcl/native"),
+    "impact": ("fcl", LIBRARY_IMPACTS),
 }
 """What is compared where an experiment names fewer than two."""
 
@@ -100,7 +100,7 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[A
     for query in dict.fromkeys(method.query for method in methods):
         named = tuple(dict.fromkeys(one.short for one in methods if one.stepped and one.query == query))
         wanted = chosen or (named if len(named) > 1 else DEFAULT[query])
-        lacking = {name: why for name in wanted if (why := missing(name.partition("/")[0])) is not None}
+        lacking = {name: why for name in wanted if (why := missing(PipelineName.read(name).backend)) is not None}
         if chosen and lacking:
             raise InputError("\n".join(lacking.values()))
         _refuse_algorithms(chosen, query)
@@ -117,8 +117,8 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[A
 def _refuse_algorithms(names: Sequence[str], query: Query) -> None:
     """Raises InputError for a method that some query can be put to, but not this one."""
     for name in names:
-        backend, stroke, algorithm = name.partition("/")
-        if stroke and algorithm not in (possible := algorithms_of(backend, query)):
+        backend, algorithm = PipelineName.read(name)
+        if algorithm is not None and algorithm not in (possible := algorithms_of(backend, query)):
             raise InputError(
                 f"--backends: {backend} cannot be asked query {query} with algorithm {algorithm}, only with "
                 f"{', '.join(possible)}"
@@ -128,7 +128,7 @@ def _refuse_algorithms(names: Sequence[str], query: Query) -> None:
 def pairs_of(names: Asked, events: Sequence[str] = ()) -> list[tuple[str, str]]:
     """Every two methods that are held against each other, of any query; last those that compute events."""
     found = [pair for asked in names.values() for pair in combinations(asked, 2)]
-    return [*dict.fromkeys(found), *((FRAMES, name) for name in events)]
+    return [*dict.fromkeys(found), *((EXACT_FRAMES, name) for name in events)]
 
 
 def event_methods(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -157,7 +157,7 @@ def cross_check(
     budget = budget or Budget()
     for name in events:
         progress(f"{name}: contacts of the same motion")
-        yield (FRAMES, name), _events(experiment, meshes, name, extent, budget)
+        yield (EXACT_FRAMES, name), _events(experiment, meshes, name, extent, budget)
     compared: Found = {}
     queries = [(query, asked) for query, asked in names.items() if len(asked) > 1]
     # what a question leaves of its share goes to those after it: that of touching surfaces takes longest to judge

@@ -36,7 +36,7 @@ from harness.process_limits import limit_memory_of_stranger
 from harness.scene.hull import Hull, hull_of
 from harness.scene.ignored_pairs import without
 from harness.scene.scene import Scene, Solid
-from harness.vocabulary import MethodName, Query, Shape
+from harness.vocabulary import MethodName, PipelineName, Query, Shape
 
 ANSWER_SECONDS = 10.0
 """s for an answer, by which a backend that hangs is told from a slow one."""
@@ -236,7 +236,7 @@ class _Refusal:
 
 def preload(name: str) -> None:
     """Import what stands behind a name, where it comes with this program: then the processes of it need not, each."""
-    backend = name.partition("/")[0]
+    backend = PipelineName.read(name).backend
     if backend != OWN and registry.ours(backend):
         with suppress(InputError):
             registry.create(backend)
@@ -248,7 +248,8 @@ def _create(name: str, shape: Shape, question: Question) -> Backend | QueryAnswe
         return OwnGaps()
     if question.query != "collision":
         return QueryAnswers(MethodName.read(name, shape, question.query), question)
-    return AtPoses(MethodName.read(name, shape)) if "/" in name else registry.create(name)
+    alone = PipelineName.read(name).algorithm is None
+    return registry.create(name) if alone else AtPoses(MethodName.read(name, shape))
 
 
 def _serve(name: str, scene: Scene, asked: Question, channel: Channel) -> None:

@@ -144,3 +144,13 @@ def test_nobody_takes_a_name_of_ours(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
     assert registry.ours("fcl")
     assert registry.create("fcl").name == "fcl"
+
+
+@pytest.mark.parametrize("name", [name for name in registry.names() if registry.ours(name)])
+def test_what_is_read_of_a_backend_is_what_it_says_once_it_is_imported(name):
+    read, said = registry.abilities_of(name), statement(name)
+    if said.missing is not None:
+        pytest.skip(said.missing)
+    assert read.queries == said.queries
+    assert read.shapes in (None, tuple(said.tolerance))  # one that has another's shapes does not write them out
+    assert set(read.gap_shapes or ()) <= set(said.tolerance)
