@@ -1,6 +1,6 @@
 """The fixed words: what a user may write for a shape, a response or an algorithm, and what a method is named by.
 
-Every room may import this file; it imports nothing of the program. A new word is a line here.
+Every folder may import this file; it imports nothing of the program. A new word is a line here.
 """
 
 from __future__ import annotations
