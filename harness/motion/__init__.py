@@ -1,1 +1,1 @@
-"""Laws of motion: where bodies are at a time, what answers a hit, what is kept of it; `predictive` is the event loop."""
+"""Laws of motion: where bodies are at a time, what answers a hit, what is kept of it; `predictive` has events."""
