@@ -1,1 +1,1 @@
-"""Which pairs can touch: a file a scheme (`brute_force`, `grid`, `sap`), kernels only, and what they share."""
+"""Which pairs can touch: a file a scheme (`grid`, `sap`), kernels only, and what they share."""
