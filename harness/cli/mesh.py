@@ -1,9 +1,10 @@
 """Make, inspect, simplify and weld mesh files.
 
-harness mesh make pumpkin --faces 1753
-harness mesh inspect meshes/*.ply
-harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
-harness mesh weld scan.stl --within 1e-6 --out scan-welded.ply
+for example:
+  harness mesh make pumpkin --faces 1753
+  harness mesh inspect meshes/*.ply
+  harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
+  harness mesh weld scan.stl --within 1e-6 --out scan-welded.ply
 """
 
 from __future__ import annotations
