@@ -1,6 +1,6 @@
 """The fixed words: what a user may write for a shape, a response or an algorithm, and what a method is named by.
 
-Every room may import this file; it imports nothing of the program. A new word is a line here.
+Every folder may import this file; it imports nothing of the program. A new word is a line here.
 """
 
 from __future__ import annotations
@@ -29,6 +29,18 @@ NEAR_QUERIES: tuple[Query, ...] = ("tolerance", "distance")
 NativeSize = Literal["native"]
 """The size of a body whose mesh is as large as its file says, a unit of the file taken for a metre."""
 NATIVE: NativeSize = "native"
+
+MESH_FORMATS = {
+    "obj": "v and f: any white space, # anywhere, lines continued by \\, indices from 1 or backwards from where they "
+    "stand, with or without texture and normal",
+    "ply": "text, or binary in either order of bytes: vertex x y z and face vertex_indices of any types; other "
+    "elements and properties passed over",
+    "stl": "binary, with any header and any bytes behind the faces; text, keywords in any case, any names, several "
+    "solids",
+    "off": "OFF, COFF, NOFF, STOFF as text, comments; colours and normals passed over",
+    "glb": "glTF 2.0: triangles and strips of the scene, placed by its nodes",
+}
+"""Mesh files that are read, by the end of their names, each with what is read of it."""
 
 Response = Literal["reflect", "elastic", "none"]
 """What a hit does: mirror each velocity along the line of centres, pass an impulse by mass, nothing."""

@@ -257,8 +257,8 @@ def timed_otherwise(
 
 def _asked_of_a_library(experiment: Experiment) -> list[Point]:
     """The points that ask a library alone whether bodies touch."""
-    engines = [(point, point.engine) for point in experiment.points]
-    return [point for point, engine in engines if (engine.algorithm, engine.query) == ("native", "collision")]
+    points = [point for point in experiment.points if point.engine.query == "collision"]
+    return [point for point in points if MethodName.of(point.parameters).short == point.engine.backend]
 
 
 def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:

@@ -41,7 +41,7 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 @dataclass(frozen=True)
 class Names:
-    """Names that only other rooms know, and what stands behind them."""
+    """Names that only other folders know, and what stands behind them."""
 
     backends: Collection[str]
     metrics: Collection[str]

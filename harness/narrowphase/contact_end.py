@@ -120,7 +120,8 @@ def end_of_hull_contact(
         Until its time the gap was never wider than 5/4 of the tolerance; if the contact ends, it is wider than 9/8
         then.
     """
-    return end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)[0]
+    found, _ = end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)
+    return found
 
 
 @kernel
@@ -133,7 +134,8 @@ def end_of_mesh_contact(
     touch it.
     """
     last = LastCrossing(ROOTS, 0.0, 0, np.empty((DEPTH, 2), np.int64))
-    return followed_mesh_contact(shape_a, shape_b, a, b, begin, end, tolerance, last)[0]
+    found, _ = followed_mesh_contact(shape_a, shape_b, a, b, begin, end, tolerance, last)
+    return found
 
 
 @kernel

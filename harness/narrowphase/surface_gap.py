@@ -22,6 +22,7 @@ from harness.narrowphase.placed_parts import Disc, disc_a, disc_b
 from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees
 from harness.narrowphase.triangle_blocks import BLOCK, TriangleBlocks, block_triangle_a, block_triangle_b
 from harness.narrowphase.triangle_distance import walk
+from harness.narrowphase.triangle_tree import radius_of
 from harness.narrowphase.vectors import Vector, dot, minus, scaled, turned_back
 
 # How many times as wide as the other a node may be, to be left whole though it has few triangles: of a floor or a wall
@@ -52,6 +53,19 @@ class SearchRoom(NamedTuple):
     nodes: Ints
     bounds: Floats
     parts: Floats
+
+
+class Nearness(NamedTuple):
+    """How near two discs can come.
+
+    Attributes
+    ----------
+    bound : the square of what they cannot come below
+    centres : the square of how far their centres are apart, of their reaches
+    """
+
+    bound: float
+    centres: float
 
 
 class SurfaceGap(NamedTuple):
@@ -130,8 +144,8 @@ def surface_gap(
 def to_be_halved(trees: Trees, blocks: Blocks, pose: Relative, nodes: NodePair) -> tuple[bool, bool]:
     """Whether there are too many triangles below either node, or these are too wide, to put all to all of the other."""
     count_a, count_b = blocks.a.counts[nodes.a], blocks.b.counts[nodes.b]
-    radius_a = trees.a.discs[nodes.a, 3] * pose.size_a
-    radius_b = trees.b.discs[nodes.b, 3] * pose.size_b
+    radius_a = radius_of(trees.a, nodes.a) * pose.size_a
+    radius_b = radius_of(trees.b, nodes.b) * pose.size_b
     wide_a, wide_b = count_a > 1 and radius_a > WIDE * radius_b, count_b > 1 and radius_b > WIDE * radius_a
     return count_a > BLOCK or wide_a, count_b > BLOCK or wide_b
 
@@ -150,7 +164,7 @@ def push_halves(
     """Replace a pair of nodes by those of its halves that may come below a limit; returns the stack's new height."""
     a, b = nodes
     halve_a, halve_b = to_be_halved(trees, blocks, pose, nodes)
-    larger_a = trees.a.discs[a, 3] * pose.size_a >= trees.b.discs[b, 3] * pose.size_b
+    larger_a = radius_of(trees.a, a) * pose.size_a >= radius_of(trees.b, b) * pose.size_b
     if not halve_b or (halve_a and larger_a):
         left, right = NodePair(a + 1, b), NodePair(trees.a.right[a], b)
         whole = disc_b(trees.b, pose, b)
@@ -161,23 +175,20 @@ def push_halves(
         whole = disc_a(trees.a, pose, a)
         of_left = nearness(whole, disc_b(trees.b, pose, left.b), axis, squared_limit)
         of_right = nearness(whole, disc_b(trees.b, pose, right.b), axis, squared_limit)
-    if of_left[0] > of_right[0] or (of_left[0] == of_right[0] and of_left[1] > of_right[1]):
+    if of_left.bound > of_right.bound or (of_left.bound == of_right.bound and of_left.centres > of_right.centres):
         left, of_left, right, of_right = right, of_right, left, of_left
-    if of_right[0] < squared_limit:
-        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = right.a, right.b, of_right[0]
+    if of_right.bound < squared_limit:
+        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = right.a, right.b, of_right.bound
         height += 1
-    if of_left[0] < squared_limit:
-        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = left.a, left.b, of_left[0]
+    if of_left.bound < squared_limit:
+        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = left.a, left.b, of_left.bound
         height += 1
     return height
 
 
 @kernel
-def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> tuple[float, float]:
-    """The square of a bound below which two discs cannot come, and how near they are to each other's centres.
-
-    The bound is as great as can be only where it is below the limit.
-    """
+def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> Nearness:
+    """How near two discs can come. The bound is as great as can be only where it is below the limit."""
     between = minus(two.centre, one.centre)
     squared = dot(between, between)
     reach = one.radius + two.radius
@@ -193,7 +204,7 @@ def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> tuple[
         bound = max(bound, split(along, squared, one.thickness + extent_along(two, cosine), reach))
         along = dot(two.normal, between)
         bound = max(bound, split(along, squared, two.thickness + extent_along(one, cosine), reach))
-    return bound, near
+    return Nearness(bound, near)
 
 
 @strict_step

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol, TypeVar
 
 from harness.arrays import Ints
 from harness.kernel import strict_step
-from harness.narrowphase.triangle_tree import TriangleTree
+from harness.narrowphase.triangle_tree import TriangleTree, radius_of
 
 # Pairs of nodes on the way at any time, at most: two a level, and fewer than 64 levels a tree.
 DEPTH = 256
@@ -91,7 +91,7 @@ def halves(
     proximity : gives the Proximity of two discs
     """
     right_a, right_b = trees.a.right[nodes.a], trees.b.right[nodes.b]
-    larger_a = right_a >= 0 and trees.a.discs[nodes.a, 3] * at.size_a >= trees.b.discs[nodes.b, 3] * at.size_b
+    larger_a = right_a >= 0 and radius_of(trees.a, nodes.a) * at.size_a >= radius_of(trees.b, nodes.b) * at.size_b
     if right_b < 0 or larger_a:
         left, right = NodePair(nodes.a + 1, nodes.b), NodePair(right_a, nodes.b)
         whole = disc_b(trees.b, at, nodes.b)

@@ -86,12 +86,12 @@ def _widest(lattice: Lattice, room: NDArray[np.float64], count: int) -> float:
 
 def _count(lattice: Lattice, room: NDArray[np.float64]) -> int:
     """How many sites of spacing 1 are in a room."""
-    return sum(
-        _steps(room[2] - layer * lattice.layer, 2 * lattice.layer)
-        * _steps(room[1] - lattice.lines(layer, row)[1], 2 * lattice.row)
-        * _steps(room[0] - lattice.lines(layer, row)[0], 1.0)
-        for layer, row in product(range(2), range(2))
-    )
+    count = 0
+    for layer, row in product(range(2), range(2)):
+        x, y = lattice.lines(layer, row)
+        of_row = _steps(room[0] - x, 1.0) * _steps(room[1] - y, 2 * lattice.row)
+        count += of_row * _steps(room[2] - layer * lattice.layer, 2 * lattice.layer)
+    return count
 
 
 def _stretched(lattice: Lattice, room: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
