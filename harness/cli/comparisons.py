@@ -38,6 +38,8 @@ from harness.workers import shared_out, usable_cores
 
 # s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
 _COMPARING = 30.0
+# s besides, to ask libraries again what they answered in their runs.
+_ASKING_AGAIN = 20.0
 
 Pair = tuple[str, str]
 
@@ -131,7 +133,9 @@ def _cross_check(
     digests: Mapping[str, Collection[float]],
 ) -> _Compared:
     """Hold the methods of an experiment against each other, and the timed runs of each against what it says here."""
-    budget = Budget(_COMPARING)
+    asking, budget = Budget(_ASKING_AGAIN), Budget(_COMPARING)
+    otherwise = list(timed_otherwise(experiment, meshes, digests, asking))
+    budget.left += asking.left
     known: Known = {}
     documents, lines, blamed = [], [], dict[str, None]()
     found_of = {
@@ -139,7 +143,7 @@ def _cross_check(
         for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=events)
         if pair in keys
     }
-    for name, reason in timed_otherwise(experiment, meshes, digests, budget):
+    for name, reason in otherwise:
         pair = next((pair for pair in found_of if name in pair), None)
         if pair is not None:
             found_of[pair].failures.append(Failure(pair, name, TIMED, 0, reason, kind="otherwise when timed"))
