@@ -33,7 +33,7 @@ class ImpactAudit(QueryAudit):
     """The audit of two methods asked "impact"."""
 
     def _apart(self, pose: Pose, pair: Pair, difference: float) -> bool:
-        allowed = max(band(self._scene, facts.tolerance, pose, pair) for facts in self._facts)
+        allowed = max(band(self._scene, facts.allowed, pose, pair) for facts in self._facts)
         return difference * _fastest(self._scene, _frame(pose), pair) > allowed
 
     def _asked_within(self, pose: Pose) -> float:
@@ -102,7 +102,7 @@ def differing_time(
     frame, truths = _frame(pose), Truths(scene, pose)
     for pair in sorted(set(answer) | set(other)):
         one, another = both((answer, other), pair)
-        allowed = band(scene, facts.tolerance, pose, pair)
+        allowed = band(scene, facts.allowed, pose, pair)
         if isinf(one) or isinf(another):
             at_end = truths.later(frame.duration).judgement(pair).gap
             if truths.judgement(pair).gap > allowed and at_end < -allowed:
