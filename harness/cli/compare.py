@@ -25,7 +25,7 @@ from harness.errors import InputError
 if TYPE_CHECKING:
     from harness.cli.surveying import Surveyed
     from harness.compare.document import Reduced
-    from harness.compare.outcome import Case, Comparison, Failure
+    from harness.compare.outcome import Case, Comparison
     from harness.compare.tally import Counts
     from harness.experiment.experiment import Experiment
     from harness.scene.scene_files import Opened
@@ -320,19 +320,7 @@ def _print(found: Comparison) -> None:
     for case in found.cases + found.shared:
         say(_sentence(case))
     for failure in found.failures:
-        say(_failed(failure))
-
-
-def _failed(failure: Failure) -> str:
-    from harness.compare.outcome import LOADING
-
-    loading = failure.pose == LOADING
-    where = "before it was asked anything" if loading else f"at {failure.pose} (call {failure.query_index})"
-    if failure.kind == "claim":
-        return f"{failure.backend} is wrong: {failure.reason}"
-    if failure.kind == "crashed":
-        return f"{failure.backend} failed {where}: {failure.reason}"
-    return f"{failure.backend} is wrong {where}: {failure.reason}"
+        say(failure.sentence)
 
 
 def _seconds(text: str) -> float:

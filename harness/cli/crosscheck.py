@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from statistics import fmean
@@ -22,7 +22,7 @@ from harness.compare.budget import Budget
 from harness.compare.comparison import Found, compare_all
 from harness.compare.document import Known, Reduced, document, reduced, shown_case
 from harness.compare.event_audit import audit_events
-from harness.compare.free_running import run_both
+from harness.compare.free_running import digest_when_asked, run_both
 from harness.compare.hard_questions import hard_questions
 from harness.compare.outcome import Comparison
 from harness.compare.poses import PoseSet, flown
@@ -215,6 +215,50 @@ def key_of(
     limits = [budget.seconds, budget.every] if budget and (budget.seconds or budget.every > 1) else []
     content = json.dumps([points, pair, repr(extent), package_versions(packages()), *limits])
     return hashlib.sha256(content.encode()).hexdigest()
+
+
+def keys_of(experiment: Experiment, meshes: Meshes) -> list[str]:
+    """The keys of the points whose answers `timed_otherwise` holds against what is said here."""
+    return [point_key(point, files_of(experiment, point, meshes)) for point in _asked_of_a_library(experiment)]
+
+
+def timed_otherwise(
+    experiment: Experiment, meshes: Meshes, digests: Mapping[str, Collection[float]], budget: Budget
+) -> Iterator[tuple[str, str]]:
+    """Backends whose runs answered other hits than they answer when the same motion is put to them frame by frame.
+
+    Parameters
+    ----------
+    digests : by the key of a point, the `event_digest` of its runs; one whose runs differ is known to be random
+    budget : ends it early, and keeps what was left out
+
+    Yields
+    ------
+    tuple of str
+        A backend, and what is wrong, each once.
+    """
+    told: set[str] = set()
+    for point in _asked_of_a_library(experiment):
+        name = point.engine.backend
+        answered = digests.get(point_key(point, files_of(experiment, point, meshes)), ())
+        if name in told or len(answered) != 1 or (scene := _scene(experiment, point, meshes)) is None:
+            continue
+        digest = None if budget.spent else digest_when_asked(scene, name, law_of(point, scene), budget)
+        if digest is None and budget.spent:
+            budget.leave_out(f"{name}: its timed runs", how=f"not held against what it says here, {budget.why}")
+        if digest is not None and digest not in answered:
+            told.add(name)
+            yield (
+                name,
+                "in its timed runs it answered other hits than it does when it is asked about the same frames in a "
+                "process of its own",
+            )
+
+
+def _asked_of_a_library(experiment: Experiment) -> list[Point]:
+    """The points that ask a library alone whether bodies touch."""
+    points = [point for point in experiment.points if point.engine.query == "collision"]
+    return [point for point in points if MethodName.of(point.parameters).short == point.engine.backend]
 
 
 def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:

@@ -7,8 +7,8 @@ from typing import cast
 
 import numpy as np
 
-from harness.arrays import Flags, Floats
-from harness.backends.contract import read_only, require_gaps, require_impacts, require_pairs
+from harness.arrays import Flags, Floats, Pairs
+from harness.backends.contract import made, read_only, require_counters, require_gaps, require_impacts, require_pairs
 from harness.backends.protocol import Distances, Impacts, ImpactTimes, Near, NearPairs
 from harness.methods.impact_times import FrameMotion
 from harness.motion.kinematics import turn
@@ -35,13 +35,13 @@ class NativeNearPairs:
 
     @property
     def counters(self) -> Mapping[str, float]:
-        return dict(getattr(self._backend, "counters", {}))
+        return require_counters(self._backend.name, getattr(self._backend, "counters", {}))
 
     def near(self, positions: Floats, quaternions: Floats) -> NearPairs:
         poses = read_only(positions), read_only(quaternions)
         if not self._gapless:
-            return cast(Distances, self._backend).distances(*poses, self._within)
-        pairs = cast(Near, self._backend).near(*poses, self._within)
+            return cast(NearPairs, made(cast(Distances, self._backend).distances(*poses, self._within)))
+        pairs = cast(Pairs, made(cast(Near, self._backend).near(*poses, self._within)))
         return NearPairs(pairs, np.full(len(pairs), np.nan), None)
 
     def checked(self, found: NearPairs) -> NearPairs:
@@ -70,7 +70,7 @@ class NativeImpacts:
 
     @property
     def counters(self) -> Mapping[str, float]:
-        return dict(getattr(self._backend, "counters", {}))
+        return require_counters(self._backend.name, getattr(self._backend, "counters", {}))
 
     def begin(self, ways: Floats) -> None:
         """A backend finds close pairs by itself."""
