@@ -79,8 +79,8 @@ def test_a_folder_imports_only_what_it_may_know(folder):
         allowed = KNOWS[folder] | BASE | {folder}
         if allowed.issuperset(re.findall(r"\bharness\.(\w+)", file.read_text(encoding="utf-8"))):
             continue  # it names no other, so that it need not be parsed
-        strangers = folders_imported(file) - allowed
-        assert not strangers, f"{file.relative_to(PACKAGE)} imports {sorted(strangers)}"
+        unknown = folders_imported(file) - allowed
+        assert not unknown, f"{file.relative_to(PACKAGE)} imports {sorted(unknown)}"
 
 
 @pytest.mark.parametrize("folder", ["narrowphase", "broadphase"])

@@ -32,7 +32,7 @@ from harness.compare.query_answers import QueryAnswers, Told
 from harness.compare.question import COLLISION, Question
 from harness.errors import InputError
 from harness.methods.at_poses import AtPoses
-from harness.process_limits import limit_memory_of_stranger
+from harness.process_limits import limit_memory_of_plugin
 from harness.scene.hull import Hull, hull_of
 from harness.scene.ignored_pairs import without
 from harness.scene.scene import Scene, Solid
@@ -276,7 +276,7 @@ def _create(name: str, shape: Shape, question: Question) -> Backend | QueryAnswe
 
 def _serve(name: str, scene: Scene, asked: Question, channel: Channel) -> None:
     """The process of the backend: load, send the facts, then answer until the parent closes its end."""
-    limit_memory_of_stranger()
+    limit_memory_of_plugin()
     try:
         made = _create(name, scene.shape, asked)
         if scene.shape not in made.shapes:

@@ -66,7 +66,7 @@ class NativeImpacts:
 
     def __init__(self, backend: Impacts, scene: Scene) -> None:
         self._backend, self._count, self._ignored = backend, len(scene.bodies), scene.ignored
-        self._room = scene.box.half - scene.bodies.radii[:, None]
+        self._inner_half = scene.box.half - scene.bodies.radii[:, None]
 
     @property
     def counters(self) -> Mapping[str, float]:
@@ -77,7 +77,7 @@ class NativeImpacts:
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:
         positions, velocities = motion.positions.copy(), motion.velocities.copy()
-        velocities[self._room <= 0.0] = 0.0  # a body as wide as the box stays in the middle
+        velocities[self._inner_half <= 0.0] = 0.0  # a body as wide as the box stays in the middle
         quaternions, now, parts = motion.quaternions, 0.0, []
         while True:
             waits = self._until_walls(positions, velocities)
@@ -112,11 +112,11 @@ class NativeImpacts:
 
     def _until_walls(self, positions: Floats, velocities: Floats) -> Floats:
         """(n, 3) s: until each body is turned on each axis; inf where it does not move."""
-        ahead = np.where(velocities > 0.0, self._room, -self._room)
+        ahead = np.where(velocities > 0.0, self._inner_half, -self._inner_half)
         with np.errstate(divide="ignore", invalid="ignore"):
             waits = np.maximum((ahead - positions) / velocities, 0.0)
         return np.where(velocities == 0.0, np.inf, waits)
 
     def _fold(self, turned: Flags, positions: Floats, velocities: Floats) -> None:
-        positions[turned] = np.copysign(self._room, velocities)[turned]
+        positions[turned] = np.copysign(self._inner_half, velocities)[turned]
         velocities[turned] *= -1.0

@@ -39,7 +39,7 @@ class Blocks(NamedTuple):
     b: TriangleBlocks
 
 
-class SearchRoom(NamedTuple):
+class SearchScratch(NamedTuple):
     """What a search writes to.
 
     Attributes
@@ -85,9 +85,9 @@ class SurfaceGap(NamedTuple):
 
 
 @kernel
-def search_room() -> SearchRoom:
+def search_scratch() -> SearchScratch:
     """Unwritten."""
-    return SearchRoom(np.empty((DEPTH, 2), np.int64), np.empty(DEPTH), np.empty((4, BLOCK)))
+    return SearchScratch(np.empty((DEPTH, 2), np.int64), np.empty(DEPTH), np.empty((4, BLOCK)))
 
 
 @kernel
@@ -100,7 +100,7 @@ def surface_gap(
     limit: float,
     enough: float,
     tolerance: float,
-    room: SearchRoom,
+    scratch: SearchScratch,
 ) -> SurfaceGap:
     """The distance of two surfaces, and between which triangles.
 
@@ -113,7 +113,7 @@ def surface_gap(
     limit : beyond which the distance does not matter
     enough : a distance that need not be known better, such as one that cannot be told from 0
     tolerance : how much smaller than `gap` the distance may be
-    room : written
+    scratch : written
 
     Returns
     -------
@@ -125,18 +125,18 @@ def surface_gap(
     if start.a >= 0:
         first, other = blocks.a.first[start.a], blocks.b.first[start.b]
         best, limit = nearer_triangles(blocks, pose, first, other, enough, tolerance, best, limit)
-    room.nodes[0, 0], room.nodes[0, 1], room.bounds[0] = 0, 0, 0.0
+    scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = 0, 0, 0.0
     height = 1
     while height > 0 and best.gap > enough:
         height -= 1
-        if room.bounds[height] >= limit * limit:
+        if scratch.bounds[height] >= limit * limit:
             continue
-        nodes = NodePair(room.nodes[height, 0], room.nodes[height, 1])
+        nodes = NodePair(scratch.nodes[height, 0], scratch.nodes[height, 1])
         halve_a, halve_b = to_be_halved(trees, blocks, pose, nodes)
         if not (halve_a or halve_b):
-            best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, room.parts)
+            best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, scratch.parts)
         else:
-            height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, room, height)
+            height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, scratch, height)
     return best
 
 
@@ -158,7 +158,7 @@ def push_halves(
     nodes: NodePair,
     axis: Vector,
     squared_limit: float,
-    room: SearchRoom,
+    scratch: SearchScratch,
     height: int,
 ) -> int:
     """Replace a pair of nodes by those of its halves that may come below a limit; returns the stack's new height."""
@@ -178,10 +178,10 @@ def push_halves(
     if of_left.bound > of_right.bound or (of_left.bound == of_right.bound and of_left.centres > of_right.centres):
         left, of_left, right, of_right = right, of_right, left, of_left
     if of_right.bound < squared_limit:
-        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = right.a, right.b, of_right.bound
+        scratch.nodes[height, 0], scratch.nodes[height, 1], scratch.bounds[height] = right.a, right.b, of_right.bound
         height += 1
     if of_left.bound < squared_limit:
-        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = left.a, left.b, of_left.bound
+        scratch.nodes[height, 0], scratch.nodes[height, 1], scratch.bounds[height] = left.a, left.b, of_left.bound
         height += 1
     return height
 

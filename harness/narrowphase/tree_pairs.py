@@ -1,7 +1,9 @@
-"""Parts of two surfaces, a node of either tree of triangles, and the step of every search through both trees.
+"""Parts of two surfaces, a node of either tree of triangles, and the step of searches through both trees.
 
 A search begins with a pair of nodes, and replaces it by the two pairs in which the larger node gives way to its halves,
 the deeper one first, until pairs of triangles are left. What is asked of the parts, and when, is up to the search.
+That for the least distance (`surface_gap`) takes a step of its own: it leaves blocks of triangles whole, and orders by
+bounds.
 """
 
 from __future__ import annotations

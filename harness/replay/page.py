@@ -100,8 +100,8 @@ def described(recording: Recording) -> str:
     """The picture in words, for screen readers."""
     _, halves = view_box(recording)
     sides = " × ".join(f"{2 * half:.4g}" for half in halves)
-    room = "A box of" if recording.half_box is not None else "A room without walls of"
-    return f"{room} {sides} m with {summary(recording)}."
+    space = "A box of" if recording.half_box is not None else "A space without walls of"
+    return f"{space} {sides} m with {summary(recording)}."
 
 
 def _page(

@@ -70,8 +70,8 @@ def _draw(canvas: Canvas, grid: Grid, left: float, bottom: float, width: float) 
         canvas.text(x - 7, y + (place + 0.5) * _ROW, text, palette.SOFT, horizontal="right", vertical="center")
     canvas.text(x + (width - _LEFT) / 2, y - 36, grid.x_label, horizontal="center")
     middle = y + len(grid.rows) * _ROW / 2
-    room = len(grid.rows) * _ROW / CHARACTER
-    canvas.text(left + 14, middle, shorten(grid.y_label, room), horizontal="center", vertical="center", turned=True)
+    letters = len(grid.rows) * _ROW / CHARACTER
+    canvas.text(left + 14, middle, shorten(grid.y_label, letters), horizontal="center", vertical="center", turned=True)
     canvas.text(x, y + len(grid.rows) * _ROW + 9, shorten(grid.title, (width - _LEFT) / CHARACTER))
 
 
