@@ -81,7 +81,7 @@ def _witness_error(scene: Scene, law: MotionLaw, found: NearAnswers, row: int, g
         if scene.shape == "sphere":
             off = float(np.linalg.norm(arm)) - float(scene.bodies.radii[body])
         else:
-            surface = placed(scene, trajectory.quaternions, body)
+            surface = placed(scene, trajectory, body)
             off = float(off_surface(arm, surface, solid=scene.shape == "hull")[0])
         error = max(error, off)
     return max(error, 0.0)

@@ -80,14 +80,14 @@ def pair_bounds(scene: Scene, trajectory: Trajectory, i: int, j: int) -> GapBoun
     if scene.shape == "sphere":
         radii = scene.bodies.radii
         return sphere_bounds(offset, float(radii[i]), float(radii[j]))
-    one, other = placed(scene, trajectory.quaternions, i), placed(scene, trajectory.quaternions, j)
+    one, other = placed(scene, trajectory, i), placed(scene, trajectory, j)
     return surface_bounds(one, Surface(other.vertices + offset, other.faces), solid=scene.shape == "hull")
 
 
-def placed(scene: Scene, quaternions: Floats, body: int) -> Surface:
-    """A body's surface as it is turned, in m from its centre; of all bodies (n, 4) are given."""
+def placed(scene: Scene, trajectory: Trajectory, body: int) -> Surface:
+    """A body's surface as it is turned, in m from its centre."""
     solid = scene.solid_of_body(body)
-    return Surface(solid.vertices @ _matrix(quaternions[body]).T, solid.faces)
+    return Surface(solid.vertices @ _matrix(trajectory.quaternions[body]).T, solid.faces)
 
 
 def _matrix(quaternion: Floats) -> Floats:
