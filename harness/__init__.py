@@ -151,10 +151,20 @@ def load(path: str | Path, **set: object) -> Experiment:
     ------
     harness.errors.InputError
         With every problem of the file and its meshes at once.
+
+    Examples
+    --------
+    >>> import harness, pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "spheres.yaml")
+    >>> _ = path.write_text("{title: Two, scene: {shape: sphere, count: 2, box: [9, 9, 9]}, motion: {duration: 1}}")
+    >>> experiment = harness.load(path, count=[2, 3], algorithm="grid")
+    >>> experiment.swept, [point.scene.count for point in experiment.points]
+    (('count',), [2, 3])
     """
     from harness.runner.preparation import prepare
 
-    return prepare([path], set)[0][0]
+    (experiment, *_), _ = prepare([path], set)
+    return experiment
 
 
 def run(experiment: Experiment) -> pd.DataFrame:
@@ -164,6 +174,15 @@ def run(experiment: Experiment) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row a run: `experiment`, `point`, `repeat`, `status`, `reason`, a column a leaf, a column a metric.
+
+    Examples
+    --------
+    >>> import harness, pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "spheres.yaml")
+    >>> _ = path.write_text("{title: Two, scene: {shape: sphere, count: 2, box: [9, 9, 9]}, motion: {duration: 1}}")
+    >>> table = harness.run(harness.load(path, repeats=1))
+    >>> table[["status", "frames", "pair_tests"]].values.tolist()
+    [['ok', 60.0, 60.0]]
     """
     from harness.runner.sweep import run
     from harness.scene.mesh_child import open_all
@@ -172,7 +191,21 @@ def run(experiment: Experiment) -> pd.DataFrame:
 
 
 def results(db: str | Path = "results/results.db") -> pd.DataFrame:
-    """The runs that a database keeps, in the form of `run`."""
+    """The runs that a database keeps, in the form of `run`.
+
+    Examples
+    --------
+    >>> import harness, pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "spheres.yaml")
+    >>> _ = path.write_text("{title: Two, scene: {shape: sphere, count: 2, box: [9, 9, 9]}, motion: {duration: 1}}")
+    >>> from harness.cli.main import main
+    >>> db = str(path.with_name("results.db"))
+    >>> main(["sweep", str(path), "--db", db, "--set", "repeats=1", "--quiet"])  # doctest: +ELLIPSIS
+    1 runs done (1 ok)...
+    0
+    >>> harness.results(db)["status"].tolist()
+    ['ok']
+    """
     from harness.store.tables import runs
 
     return runs(db)
@@ -185,6 +218,16 @@ def trace(experiment: Experiment) -> Trace:
     ------
     harness.runner.sweep.RunError
         If the run does not come to its end.
+
+    Examples
+    --------
+    >>> import harness, pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "wall.yaml")
+    >>> bodies = "[{position: [0, 0, 0], velocity: [1, 0, 0]}]"
+    >>> _ = path.write_text(f"{{title: Wall, scene: {{shape: sphere, bodies: {bodies}, box: [9, 9, 9]}}}}")
+    >>> hits = harness.trace(harness.load(path, algorithm="predictive"))
+    >>> hits.times.tolist(), hits.walls.tolist()  # half a box less a radius away, at 1 m/s; wall x+
+    ([4.0], [1])
     """
     from harness.runner.sweep import trace
     from harness.scene.mesh_child import open_all

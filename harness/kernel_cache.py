@@ -154,7 +154,7 @@ def _folder(module: str) -> str | None:
 def all_sources(module: str) -> set[Path]:
     """The files of a module and of all in this package that it imports, over any number of steps.
 
-    A stranger's module may have inlined anything of this package.
+    A module of another package may have inlined anything of this package.
     """
     if _source(module) is None:
         return set(PACKAGE.rglob("*.py"))

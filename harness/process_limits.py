@@ -55,14 +55,14 @@ def limit(*, memory: int | None = None, output: int | None = None, processor: fl
         _lower(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + processor), for_good=False)
 
 
-def limit_memory_of_stranger() -> None:
+def limit_memory_of_plugin() -> None:
     """Let this process take no more than half of what the machine has, where nobody says what code may take."""
     limit(memory=_half_of_machine())
 
 
 @contextmanager
-def memory_of_stranger_limited() -> Iterator[None]:
-    """As `limit_memory_of_stranger`, until the end of this context."""
+def memory_of_plugin_limited() -> Iterator[None]:
+    """As `limit_memory_of_plugin`, until the end of this context."""
     before = resource.getrlimit(resource.RLIMIT_AS)
     _lower(resource.RLIMIT_AS, _address_space() + _half_of_machine(), for_good=False)
     try:

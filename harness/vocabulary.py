@@ -1,6 +1,6 @@
 """The fixed words: what a user may write for a shape, a response or an algorithm, and what a method is named by.
 
-Every room may import this file; it imports nothing of the program. A new word is a line here.
+Every folder may import this file; it imports nothing of the program. A new word is a line here.
 """
 
 from __future__ import annotations
@@ -29,6 +29,18 @@ NEAR_QUERIES: tuple[Query, ...] = ("tolerance", "distance")
 NativeSize = Literal["native"]
 """The size of a body whose mesh is as large as its file says, a unit of the file taken for a metre."""
 NATIVE: NativeSize = "native"
+
+MESH_FORMATS = {
+    "obj": "v and f: any white space, # anywhere, lines continued by \\, indices from 1 or backwards from where they "
+    "stand, with or without texture and normal",
+    "ply": "text, or binary in either order of bytes: vertex x y z and face vertex_indices of any types; other "
+    "elements and properties passed over",
+    "stl": "binary, with any header and any bytes behind the faces; text, keywords in any case, any names, several "
+    "solids",
+    "off": "OFF, COFF, NOFF, STOFF as text, comments; colours and normals passed over",
+    "glb": "glTF 2.0: triangles and strips of the scene, placed by its nodes",
+}
+"""Mesh files that are read, by the end of their names, each with what is read of it."""
 
 Response = Literal["reflect", "elastic", "none"]
 """What a hit does: mirror each velocity along the line of centres, pass an impulse by mass, nothing."""
@@ -112,11 +124,32 @@ REFERENCE_ALGORITHM: ReferenceAlgorithm = "predictive"
 OWN_BACKEND = "fcl"
 """The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
 
+EXACT_FRAMES = f"{OWN_BACKEND}/grid"
+"""The pipeline that is asked of frames, or beside all backends, where any exact one of this program would do."""
+
+LIBRARY_IMPACTS = f"{OWN_BACKEND}/native"
+"""The pipeline of a library that is asked for times of impact where none is named."""
+
 METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages", "dt")
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 
 KNOBS = ("dt", "tolerance")
 """Those of them that trade accuracy for time within one method."""
+
+
+class Abilities(NamedTuple):
+    """What a backend says that it can be asked, as far as is known without importing it; None where that is not said.
+
+    Attributes
+    ----------
+    shapes : that it can hold
+    gap_shapes : those whose gaps it tells, where these are not all of them
+    queries : that its own pipeline answers
+    """
+
+    shapes: tuple[Shape, ...] | None = None
+    gap_shapes: tuple[Shape, ...] | None = None
+    queries: tuple[Query, ...] | None = None
 
 
 _UNKNOWN = AlgorithmWord("an algorithm of another version of this program")
@@ -136,6 +169,25 @@ def algorithms_of(backend: str, query: Query = "collision") -> tuple[str, ...]:
     own = backend == OWN_BACKEND
     both = own and query != "collision"
     return tuple(name for name, word in ALGORITHMS.items() if both or word.own == own)
+
+
+class PipelineName(NamedTuple):
+    """A pipeline as a command or a stored comparison names it: a backend, with an algorithm or alone.
+
+    >>> PipelineName.read("fcl/grid")
+    PipelineName(backend='fcl', algorithm='grid')
+    >>> PipelineName.read("pybullet").algorithm is None
+    True
+    """
+
+    backend: str
+    algorithm: str | None = None
+
+    @classmethod
+    def read(cls, text: str) -> PipelineName:
+        """The two parts of a name."""
+        backend, stroke, algorithm = text.partition("/")
+        return cls(backend, algorithm if stroke else None)
 
 
 class MethodName(NamedTuple):
@@ -169,7 +221,7 @@ class MethodName(NamedTuple):
         >>> MethodName.read("fcl", "hull").pipeline, MethodName.read("pybullet", "hull").pipeline
         ('fcl/brute-force', 'pybullet')
         """
-        backend, _, algorithm = pipeline.partition("/")
+        backend, algorithm = PipelineName.read(pipeline)
         return cls(backend, algorithm or algorithms_of(backend)[0], shape, query)
 
     @property

@@ -43,21 +43,37 @@ class ProgramCopy:
         (self.folder / path).write_text(textwrap.dedent(text))
         self.touched.append(path)
 
-    def add_word(self, name, meaning):
+    def add_algorithm(self, name, meaning):
         """A line of `ALGORITHMS` in the vocabulary."""
+        self._add_word("ALGORITHMS: dict[str, AlgorithmWord] = {\n", f'"{name}": AlgorithmWord("{meaning}")')
+
+    def add_mesh_format(self, name, meaning):
+        """A line of `MESH_FORMATS` in the vocabulary."""
+        self._add_word("MESH_FORMATS = {\n", f'"{name}": "{meaning}"')
+
+    def _add_word(self, start, entry):
         file = self.folder / "harness/vocabulary.py"
-        head, start, rest = file.read_text().partition("ALGORITHMS: dict[str, AlgorithmWord] = {\n")
-        file.write_text(f'{head}{start}    "{name}": AlgorithmWord("{meaning}"),\n{rest}')
+        head, start, rest = file.read_text().partition(start)
+        file.write_text(f"{head}{start}    {entry},\n{rest}")
         self.touched.append("harness/vocabulary.py")
 
     def run(self, *words):
         """What a command prints."""
-        ran = subprocess.run(
+        ran = self._ran(*words)
+        assert ran.returncode == 0, ran.stderr
+        return ran.stdout
+
+    def refused(self, *words):
+        """What a command says that finds its input wrong."""
+        ran = self._ran(*words)
+        assert ran.returncode == 2, ran.stderr
+        return ran.stderr
+
+    def _ran(self, *words):
+        return subprocess.run(
             [sys.executable, "-m", "harness", *map(str, words)],
             cwd=self.folder, env=self.environment, capture_output=True, text=True,
         )  # fmt: skip
-        assert ran.returncode == 0, ran.stderr
-        return ran.stdout
 
     def sweep(self, *experiments):
         """The runs of experiment files, by the name of the experiment, in a fresh database."""

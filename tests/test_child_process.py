@@ -264,11 +264,11 @@ def test_what_strangers_may_take_is_limited_and_given_back(monkeypatch):
 
     def fill(channel):
         before = resource.getrlimit(resource.RLIMIT_AS)
-        with suppress(MemoryError), process_limits.memory_of_stranger_limited():
+        with suppress(MemoryError), process_limits.memory_of_plugin_limited():
             bytearray(2**31)
             channel.send(b"filled")
         channel.send(b"given back" if resource.getrlimit(resource.RLIMIT_AS) == before else b"kept")
-        process_limits.limit_memory_of_stranger()
+        process_limits.limit_memory_of_plugin()
         with suppress(MemoryError):
             bytearray(2**31)
             channel.send(b"filled")

@@ -1,4 +1,4 @@
-"""An experiment, a mesh, a backend, a broad phase and a method are one new file each, and a word where it is new."""
+"""An experiment, a mesh, a mesh format, a backend, a broad phase and a method are one new file each, and a new word."""
 
 import json
 import sqlite3
@@ -61,6 +61,36 @@ def test_a_mesh_is_one_file_beside_the_experiment(program):
     assert same_hits(program, "tetrahedra")["parameters"]["faces"] == 4
 
 
+def test_a_mesh_format_is_one_file_and_its_word(program):
+    program.add(
+        "harness/scene/formats/tri.py",
+        """
+        import numpy as np
+
+        from harness.errors import InputError
+        from harness.scene.polygon_mesh import of_triangles
+
+        BEGINS = rb"triangles:"
+
+        def read(content):
+            if not content.startswith(b"triangles:"):
+                raise InputError("it does not begin with triangles:")
+            corners = np.array(content[10:].split(), float).reshape(-1, 3)
+            return of_triangles(corners, np.arange(len(corners)).reshape(-1, 3))
+        """,
+    )
+    program.add_mesh_format("tri", "corners of triangles")
+    assert program.touched == ["harness/scene/formats/tri.py", "harness/vocabulary.py"]
+    corners = "0.5 0 0  -0.5 0.5 0  -0.5 -0.5 0   0.5 0 0  0 0 0.5  -0.5 0.5 0"
+    program.add("two.tri", f"triangles: {corners}")
+    assert '"faces": 2' in program.run("mesh", "inspect", "two.tri", "--json")
+    assert "  .tri  corners of triangles" in program.run("mesh", "--help")
+    program.add("two.off", "triangles: 0 0 0")
+    assert "two.off: this is a file of another format: name it .tri" in program.refused("mesh", "inspect", "two.off")
+    program.add("mine.yaml", experiment("fcl", "brute-force", "tow.tri"))
+    assert 'did you mean "two.tri"?' in program.refused("validate", "mine.yaml")
+
+
 def test_a_backend_is_one_file_and_the_version_of_its_package_is_kept(program):
     program.add(
         "harness/backends/distances.py",
@@ -94,6 +124,8 @@ def test_a_backend_is_one_file_and_the_version_of_its_package_is_kept(program):
     with closing(sqlite3.connect(program.folder / "results.db")) as database:
         ((packages,),) = database.execute("select packages from sweep")
     assert "hypothesis" in json.loads(packages)
+    program.add("hulls.yaml", experiment("distances", "native", "cube.off").replace("sphere", "hull"))
+    assert "hulls.yaml:3:16: backend distances has no shape hull, only sphere" in program.refused("plan", "hulls.yaml")
 
 
 def test_a_broad_phase_is_one_file_and_its_word(compiled_program):
@@ -124,7 +156,7 @@ def test_a_broad_phase_is_one_file_and_its_word(compiled_program):
         SCHEME = Scheme("slices along x", lambda radii, box, size_classes: Slices(radii))
         """,
     )
-    program.add_word("slices", "pairs from slices along x")
+    program.add_algorithm("slices", "pairs from slices along x")
     assert program.touched == ["harness/broadphase/slices.py", "harness/vocabulary.py"]
     program.add("mine.yaml", experiment("fcl", "slices"))
     assert same_hits(program, "mine")["metrics"]["pair_tests"] < 6 * 66
@@ -163,7 +195,7 @@ def test_a_method_of_another_kind_is_one_file_and_its_word(compiled_program):
         METHOD = Both
         """,
     )
-    program.add_word("both", "the grid, asked twice")
+    program.add_algorithm("both", "the grid, asked twice")
     assert program.touched == ["harness/methods/both.py", "harness/vocabulary.py"]
     program.add("mine.yaml", experiment("fcl", "both"))
     same_hits(program, "mine")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from harness.arrays import Floats, Pairs
@@ -115,10 +117,55 @@ def require_impacts(name: str, answer: object, count: int, duration: float) -> I
     return ImpactTimes(pairs, _numbers(name, "time", parts[1], pairs, duration, "s"))
 
 
+def require_counters(name: str, counters: object) -> dict[str, float]:
+    """What a backend has counted so far, if it counts: numbers of work from 0 on, by the metrics that they are.
+
+    What a run counts itself, such as `frames`, no backend counts for it.
+
+    Raises
+    ------
+    ContractError
+
+    >>> require_counters("mine", {"narrow_tests": 3})
+    {'narrow_tests': 3}
+    >>> require_counters("mine", {"narrow_tests": -3})
+    Traceback (most recent call last):
+    harness.backends.contract.ContractError: backend "mine": its counter narrow_tests must be 0 or more, not -3
+    """
+    if not isinstance(counters, Mapping):
+        raise ContractError(f'backend "{name}": its counters must be numbers by name, not {type(counters).__name__}')
+    found = {}
+    for counter, value in counters.items():
+        if counter not in COUNTERS:
+            raise ContractError(f'backend "{name}": it cannot count {counter}, only {", ".join(COUNTERS)}')
+        if not isinstance(value, int | float | np.integer | np.floating) or not 0.0 <= value < np.inf:
+            raise ContractError(f'backend "{name}": its counter {counter} must be 0 or more, not {value!r}')
+        found[str(counter)] = value if isinstance(value, int | float) else value.item()
+    return found
+
+
+COUNTERS = ("pair_tests", "narrow_tests", "hull_tests", "hull_searches", "fcl_tests", "advancement_steps")
+"""Of work: metrics that a backend may count."""
+
+
+def made(answer: object) -> object:
+    """An answer in arrays: what is none yet is made one here, where the clock of the backend runs.
+
+    What cannot be one stays as it is, for `require_pairs` and its like to refuse.
+    """
+    if answer is None or type(answer) is np.ndarray:
+        return answer
+    if isinstance(answer, tuple):
+        return tuple(made(part) for part in answer)
+    try:
+        return np.asarray(answer)
+    except ValueError:
+        return answer
+
+
 def read_only(poses: Floats) -> Floats:
-    """The same numbers, which a backend cannot write to."""
-    view: Floats = poses.view()
-    view.flags.writeable = False
+    """The same numbers, which a backend cannot write to, nor make writable: of such a buffer NumPy makes none."""
+    view: Floats = np.asarray(poses.data.toreadonly())
     return view
 
 

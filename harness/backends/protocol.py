@@ -5,7 +5,9 @@ in the group `harness.backends`. It is then named by `engine.backend`, with its 
 functions below ask for, a backend may have beside that.
 
 One that says `queries` answers more than whether bodies touch: with "distance" it has the method of `Distances`, with
-"tolerance" that or the one of `Near`, with "impact" that of `Impacts`.
+"tolerance" that or the one of `Near`, with "impact" that of `Impacts`. Where it tells gaps of some of its shapes alone,
+`gap_shapes` are those. `shapes`, `queries` and `gap_shapes` are written out in the class, so that an experiment that
+asks for anything else is refused before a library is imported.
 """
 
 from __future__ import annotations
@@ -19,6 +21,10 @@ if TYPE_CHECKING:  # of numpy, which a list of the backends can do without
     from harness.arrays import Floats, Pairs
     from harness.scene.hull import Hull
     from harness.scene.scene import Scene, Solid
+
+
+DEFAULT_QUERIES: tuple[Query, ...] = ("collision",)
+"""What a backend answers that does not say it."""
 
 
 class NearPairs(NamedTuple):
@@ -125,7 +131,7 @@ class Impacts(Backend, Protocol):
 
 def queries(backend: Backend) -> tuple[Query, ...]:
     """What the backend can be asked; one that does not say answers whether bodies touch."""
-    said: tuple[Query, ...] = getattr(backend, "queries", ("collision",))
+    said: tuple[Query, ...] = getattr(backend, "queries", DEFAULT_QUERIES)
     return said
 
 

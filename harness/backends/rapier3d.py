@@ -33,6 +33,7 @@ class Rapier3d:
 
     name = "rapier3d"
     shapes: tuple[Shape, ...] = ("sphere", "hull", "mesh")
+    gap_shapes: tuple[Shape, ...] = ("sphere", "hull")
     queries: tuple[Query, ...] = ("collision", "tolerance", "distance", "impact")
     units = UNITS
     precision = "single"

@@ -13,15 +13,17 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
 from pathlib import Path
+from typing import Any
 
-from harness.backends.protocol import Backend
+from harness.backends.protocol import DEFAULT_QUERIES, Backend
 from harness.errors import InputError
+from harness.vocabulary import Abilities
 
 GROUP = "harness.backends"
 PROGRAM = "harness"
@@ -42,12 +44,14 @@ class Declaration:
     Parameters
     ----------
     load : imports its class
+    source : of a file of this folder, its name and that of the class
     command : what brings its library, where that is an extra of its own
     packages : whose versions its verdicts and times depend on
     ours : whether it comes with this program
     """
 
     load: Callable[[], type[Backend]]
+    source: tuple[str, str] | None = None
     command: str | None = None
     packages: frozenset[str] = frozenset()
     ours: bool = True
@@ -84,6 +88,16 @@ def create(name: str) -> Backend:
     except ImportError as error:
         raise BackendError(name, _why(declared[name], error)) from error
     return backend
+
+
+def abilities_of(name: str) -> Abilities:
+    """What a backend can be asked, as its file says; nothing is known of one of another package until it is imported.
+
+    >>> abilities_of("cgal")
+    Abilities(shapes=('mesh',), gap_shapes=None, queries=('collision',))
+    """
+    declared = _declared().get(name)
+    return Abilities() if declared is None or declared.source is None else _abilities(*declared.source)
 
 
 def install_command(name: str) -> str | None:
@@ -149,7 +163,13 @@ def _pointed(entry: EntryPoint, package: str) -> Declaration:
     command = f"pip install '{package or PROGRAM}[{','.join(extras)}]'" if extras else None
     needed = _required(package, *extras) if package else frozenset[str]()
     ours = package == PROGRAM
-    return Declaration(entry.load, command, needed if ours or not package else needed | {package}, ours)
+    source = _source(entry) if ours else None
+    return Declaration(entry.load, source, command, needed if ours or not package else needed | {package}, ours)
+
+
+def _source(entry: EntryPoint) -> tuple[str, str] | None:
+    folder, _, module = entry.module.rpartition(".")
+    return (module, entry.attr) if folder == __package__ else None
 
 
 def _extras(entry: EntryPoint) -> list[str]:
@@ -168,6 +188,7 @@ def _in_this_folder() -> dict[str, Declaration]:
             package = said.get("PACKAGE")
             found[file.stem] = Declaration(
                 _loader(file.stem),
+                (file.stem, said["BACKEND"]),
                 f"pip install {package}" if package else None,
                 frozenset({package} if package else ()),
             )
@@ -191,6 +212,30 @@ def _constants(file: Path) -> Iterator[tuple[str, str]]:
                 yield node.targets[0].id, str(node.value.value)
             elif isinstance(node.value, ast.Name):
                 yield node.targets[0].id, node.value.id
+
+
+@lru_cache(maxsize=32)
+def _abilities(module: str, name: str) -> Abilities:
+    """What a class of a file of this folder says at its top, read and not run."""
+    text = (Path(__file__).parent / f"{module}.py").read_text(encoding="utf-8")
+    classes = (node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name)
+    made = next(classes, None)
+    if made is None:
+        return Abilities()
+    said = dict(_assigned(made))
+    if "queries" not in said and not made.bases:
+        said["queries"] = DEFAULT_QUERIES
+    return Abilities(**{field: said[field] for field in Abilities._fields if field in said})
+
+
+def _assigned(made: ast.ClassDef) -> Iterator[tuple[str, Any]]:
+    """The attributes of a class to which a literal value is assigned, each with that."""
+    for node in made.body:
+        if isinstance(node, ast.AnnAssign | ast.Assign) and node.value is not None:
+            target: ast.expr = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
+            if isinstance(target, ast.Name):
+                with suppress(ValueError):
+                    yield target.id, ast.literal_eval(node.value)
 
 
 def _required(package: str, *extras: str) -> frozenset[str]:

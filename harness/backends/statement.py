@@ -1,7 +1,7 @@
 """What a backend says of itself: why it cannot be used, or its shapes, tolerances and approximations.
 
 Those of this package are asked here, once for all commands as long as nothing is installed or removed: their libraries
-take a second to import. A stranger's is imported in a process of its own, so that one that exits, hangs, prints or
+take a second to import. A plugin's is imported in a process of its own, so that one that exits, hangs, prints or
 leaves a process behind costs its own line only:
 
     python -m harness.backends.statement FD NAME
@@ -24,13 +24,13 @@ from harness.backends.protocol import approximations, precision, queries, units
 from harness.installed import importable
 from harness.kept_files import keep, kept
 from harness.kernel_cache import PACKAGE
-from harness.process_limits import isolate, limit_memory_of_stranger
+from harness.process_limits import isolate, limit_memory_of_plugin
 from harness.vocabulary import Shape
 
 if TYPE_CHECKING:
     from harness.child_process import Channel
 
-# s for the import and the answer of a stranger, of which a person waits for none with the first and for all that
+# s for the import and the answer of a plugin, of which a person waits for none with the first and for all that
 # their plan depends on with the second.
 LISTED, NEEDED = 20.0, 120.0
 
@@ -65,7 +65,7 @@ def statement(name: str, seconds: float = LISTED) -> Statement:
     Parameters
     ----------
     name : of a declared backend
-    seconds : that a stranger's may take
+    seconds : that a plugin's may take
     """
     return _asked(name, seconds, tuple(sys.path))
 
@@ -96,8 +96,8 @@ def approximation(name: str, shape: Shape) -> str | None:
     return said.approximations.get(shape)
 
 
-def ask_strangers_here() -> None:
-    """Ask a stranger's in this process from now on: it was started to be lost if need be."""
+def ask_plugins_here() -> None:
+    """Ask plugins in this process from now on: it was started to be lost if need be."""
     global _process_may_be_lost
     _process_may_be_lost = True
 
@@ -152,7 +152,7 @@ def _say(name: str) -> Statement:
 
 
 def _say_elsewhere(name: str, seconds: float) -> Statement:
-    from harness.child_process import Child  # where there is no stranger, there is no child
+    from harness.child_process import Child  # where there is no plugin, there is no child
 
     with Child.spawn("harness.backends.statement", [name], os.environ) as child:
         answer = child.receive(seconds)
@@ -164,7 +164,7 @@ def _say_elsewhere(name: str, seconds: float) -> Statement:
 
 
 def _say_within_limits(name: str, channel: Channel) -> None:
-    limit_memory_of_stranger()
+    limit_memory_of_plugin()
     channel.send(_written(_say(name)))
 
 

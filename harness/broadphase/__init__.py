@@ -1,1 +1,1 @@
-"""Which pairs can touch: all pairs, uniform and hierarchical grid."""
+"""Which pairs can touch: a file a scheme (`grid`, `sap`), kernels only, and what they share."""

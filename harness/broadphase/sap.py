@@ -232,7 +232,7 @@ def sweep(axis: int, order: Order, lows: Floats, spheres: Floats, blocks: Blocks
     order : (n,) the bodies in the order of their lower ends along the axis
     lows : (n,) those ends, m
     spheres, blocks : (n, 4), (n // LANES + 1,) what `place` has written
-    keys : (room,) written: i << 32 | j of each close pair, in no order, as far as there is room
+    keys : (capacity,) written: i << 32 | j of each close pair, in no order, as far as there is room
 
     Returns
     -------

@@ -12,6 +12,10 @@ fails at a pose.
 from __future__ import annotations
 
 import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.overrides import add_override_argument, overrides_of
@@ -20,9 +24,10 @@ from harness.errors import InputError
 
 if TYPE_CHECKING:
     from harness.cli.surveying import Surveyed
-    from harness.compare.document import Known, Reduced
-    from harness.compare.outcome import Case, Comparison, Failure
+    from harness.compare.document import Reduced
+    from harness.compare.outcome import Case, Comparison
     from harness.compare.tally import Counts
+    from harness.experiment.experiment import Experiment
     from harness.scene.scene_files import Opened
 
 DATABASE = "results/results.db"
@@ -54,11 +59,63 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="one JSON document on standard output")
 
 
+@dataclass
+class _Findings:
+    """What was found of all experiments.
+
+    Parameters
+    ----------
+    whole : all of it together
+    rows : its cases, each with whether it is a real disagreement
+    kept : what the database keeps: experiment, who was compared, the key of what was asked, and the document
+    atlases : of the experiments that have families
+    """
+
+    whole: Comparison
+    rows: list[tuple[Reduced, bool]] = field(default_factory=list)
+    kept: list[tuple[str, tuple[str, str], str, dict[str, Any]]] = field(default_factory=list)
+    atlases: list[Surveyed] = field(default_factory=list)
+
+    @property
+    def ordered(self) -> list[Reduced]:
+        """Its cases as `document` has them: what one backend loses first, then what both share."""
+        return [row for row, real in self.rows if real] + [row for row, real in self.rows if not real]
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Compare, print, and tell by the exit code whether a backend was wrong."""
-    import json
-    import sys
+    from harness.runner.preparation import prepare
 
+    chosen = _chosen(arguments.backends)
+    experiments, meshes = prepare(arguments.paths, overrides_of(arguments), _progress)
+    if arguments.db is not None:
+        _open(arguments.db).close()  # before the work, not after it
+    if arguments.save:
+        _make_folder(arguments.save)
+    found = _compared(experiments, meshes, chosen, arguments)
+    ordered, files = found.ordered, dict[int, str]()
+    unsaved: OSError | None = None
+    if arguments.save:
+        try:
+            _save(ordered, meshes, arguments.save, files)
+            _save_atlases(found.atlases, ordered, files, arguments.save)
+        except OSError as error:  # what was found is said and kept all the same
+            unsaved = error
+    _show(found, files, as_json=arguments.json)
+    _keep(found.kept, arguments.db)
+    if unsaved is not None:
+        raise _unwritable(unsaved, arguments.save)
+    return 0 if found.whole.passed else 1
+
+
+def _progress(line: str) -> None:
+    print(line, file=sys.stderr)
+
+
+def _compared(
+    experiments: Sequence[Experiment], meshes: Opened, chosen: tuple[str, ...], arguments: argparse.Namespace
+) -> _Findings:
+    """Ask everyone about every experiment, and make the cases smaller."""
     from harness.cli.crosscheck import (
         SAVED,
         SHOWN,
@@ -70,71 +127,57 @@ def run(arguments: argparse.Namespace) -> int:
         key_of,
         reductions,
     )
-    from harness.cli.surveying import cell_row, cell_text, engines, survey_key, surveyed
+    from harness.cli.surveying import engines, survey_key, surveyed
     from harness.compare.budget import Budget
-    from harness.compare.document import document
+    from harness.compare.document import Known
     from harness.compare.outcome import Comparison
-    from harness.runner.preparation import prepare
     from harness.workers import usable_cores
 
-    def progress(line: str) -> None:
-        print(line, file=sys.stderr)
-
-    chosen = _chosen(arguments.backends)
-    experiments, meshes = prepare(arguments.paths, overrides_of(arguments), progress)
-    if arguments.db is not None:
-        _open(arguments.db).close()  # before the work, not after it
-    if arguments.save:
-        _make_folder(arguments.save)
-    whole = Comparison()
-    rows: list[tuple[Reduced, bool]] = []
-    keep = []
-    known: Known = {}
+    found_of_all, known = _Findings(Comparison()), Known()
+    whole, rows = found_of_all.whole, found_of_all.rows
     budget = Budget(arguments.budget, arguments.every)
     if budget.every > 1:
         budget.leave_out(f"of the poses of each scene one in {budget.every} was asked about")
-    atlases: list[Surveyed] = []
     for experiment in experiments:
         if experiment.measure.families:
-            found_of = surveyed(experiment, meshes, engines(chosen), budget, progress, usable_cores())
-            whole.add(found_of.found)
-            rows += [(row, True) for row in found_of.rows]
-            atlases.append(found_of)
-            keep += [
+            atlas = surveyed(experiment, meshes, engines(chosen), budget, _progress, usable_cores())
+            whole.add(atlas.found)
+            rows += [(row, True) for row in atlas.rows]
+            found_of_all.atlases.append(atlas)
+            found_of_all.kept += [
                 (experiment.name, pair, survey_key(experiment, meshes, pair[0]), document_of)
-                for pair, document_of in found_of.documents()
+                for pair, document_of in atlas.documents()
             ]
             continue
         names, lacking = backends_of(experiment, chosen)
         events = event_methods(experiment, chosen)
         whole.unsupported += lacking
         all_names = dict.fromkeys(name for asked in names.values() for name in asked)
-        progress(f"{experiment.name}: {', '.join((*all_names, *events))}")
-        for pair, found in cross_check(experiment, meshes, names, WHOLE, progress, budget, events):
+        _progress(f"{experiment.name}: {', '.join((*all_names, *events))}")
+        for pair, found in cross_check(experiment, meshes, names, WHOLE, _progress, budget, events):
             small = reductions(found, meshes, SAVED if arguments.save else SHOWN, known)
             rows += [(row, place < len(found.cases)) for place, row in enumerate(small)]
-            keep.append(
+            found_of_all.kept.append(
                 (experiment.name, pair, key_of(experiment, meshes, pair, WHOLE, budget), kept(experiment, found, small))
             )
             whole.add(found)
     whole.left_out += [line for line in budget.left_out if line not in whole.left_out]
-    # as `document` has them: what one backend loses first, then what both share
-    ordered = [row for row, real in rows if real] + [row for row, real in rows if not real]
-    files: dict[int, str] = {}
-    unsaved: OSError | None = None
-    if arguments.save:
-        try:
-            _save(ordered, meshes, arguments.save, files)
-            _save_atlases(atlases, ordered, files, arguments.save)
-        except OSError as error:  # what was found is said and kept all the same
-            unsaved = error
-    cells = [cell for atlas in atlases for cell in atlas.atlas.cells]
-    if arguments.json:
+    return found_of_all
+
+
+def _show(found: _Findings, files: dict[int, str], *, as_json: bool) -> None:
+    """Print what was found, with the files that were saved."""
+    from harness.cli.surveying import cell_row, cell_text
+    from harness.compare.document import document
+
+    ordered, whole = found.ordered, found.whole
+    cells = [cell for atlas in found.atlases for cell in atlas.atlas.cells]
+    if as_json:
         atlas = {"atlas": [cell_row(cell) for cell in cells]} if cells else {}
         json.dump(document(whole, ordered, files) | atlas, sys.stdout, allow_nan=False)
         print()
         for line in whole.unsupported + whole.left_out:
-            progress(line)
+            _progress(line)
     else:
         for cell in cells:
             print(cell_text(cell))
@@ -143,31 +186,27 @@ def run(arguments: argparse.Namespace) -> int:
         if row.tried and row.small is None:
             case = row.case
             seen = f"{case.wrong}, {case.pose.name}, call {case.query_index}"
-            progress(f"{seen}: asked afresh, it was not found again; it may depend on what was asked before")
-    _keep(keep, arguments.db)
-    if unsaved is not None:
-        raise _unwritable(unsaved, arguments.save)
-    return 0 if whole.passed else 1
+            _progress(f"{seen}: asked afresh, it was not found again; it may depend on what was asked before")
 
 
 def _chosen(text: str | None) -> tuple[str, ...]:
     """The backends and methods that `--backends` names."""
     from harness.backends.registry import names
     from harness.experiment.messages import listed, near, shown
-    from harness.vocabulary import ALGORITHMS, QUERIES, algorithms_of
+    from harness.vocabulary import ALGORITHMS, QUERIES, PipelineName, algorithms_of
 
     if text is None:
         return ()
     chosen = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
     for name in chosen:
-        backend, stroke, algorithm = name.partition("/")
+        backend, algorithm = PipelineName.read(name)
         if backend not in names():
             hint = near(backend, names()) or f"; there are {listed(names())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
         # of queries other than collision also the backend's own; which experiments ask is known when they are read
         possible = [word for query in QUERIES for word in algorithms_of(backend, query) if ALGORITHMS[word].stepped]
         possible = list(dict.fromkeys(possible))
-        if stroke and algorithm not in possible:
+        if algorithm is not None and algorithm not in possible:
             hint = near(algorithm, possible) or (f"; there are {listed(possible)}" if possible else "")
             raise InputError(f"--backends: {backend} cannot be asked at poses with algorithm {shown(algorithm)}{hint}")
     if len(chosen) < 2:
@@ -184,7 +223,6 @@ def _open(path: str) -> Any:
 def _keep(found: list[tuple[str, tuple[str, str], str, dict[str, Any]]], chosen: str | None) -> None:
     """Into the database. One that was not asked for and cannot be used costs a warning, not the comparison."""
     import shlex
-    import sys
 
     try:
         with _open(chosen or DATABASE) as database:
@@ -282,19 +320,7 @@ def _print(found: Comparison) -> None:
     for case in found.cases + found.shared:
         say(_sentence(case))
     for failure in found.failures:
-        say(_failed(failure))
-
-
-def _failed(failure: Failure) -> str:
-    from harness.compare.outcome import LOADING
-
-    loading = failure.pose == LOADING
-    where = "before it was asked anything" if loading else f"at {failure.pose} (call {failure.query_index})"
-    if failure.kind == "claim":
-        return f"{failure.backend} is wrong: {failure.reason}"
-    if failure.kind == "crashed":
-        return f"{failure.backend} failed {where}: {failure.reason}"
-    return f"{failure.backend} is wrong {where}: {failure.reason}"
+        say(failure.sentence)
 
 
 def _seconds(text: str) -> float:

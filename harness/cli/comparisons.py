@@ -7,7 +7,7 @@ here is timed by the CPU time of a process of its own.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -22,19 +22,24 @@ from harness.cli.crosscheck import (
     event_methods,
     kept,
     key_of,
+    keys_of,
     pairs_of,
     reductions,
+    timed_otherwise,
 )
 from harness.cli.surveying import SWEPT_SECONDS, engines, survey_key, surveyed
 from harness.compare.budget import Budget
 from harness.compare.document import Known
-from harness.compare.event_audit import FRAMES
+from harness.compare.outcome import TIMED, Comparison, Failure
 from harness.experiment.experiment import Experiment
 from harness.store.database import Database
+from harness.vocabulary import EXACT_FRAMES
 from harness.workers import shared_out, usable_cores
 
 # s for the comparison of an experiment's methods within a sweep; `harness compare` takes as long as it takes.
 _COMPARING = 30.0
+# s besides, to ask libraries again what they answered in their runs.
+_ASKING_AGAIN = 20.0
 
 Pair = tuple[str, str]
 
@@ -83,7 +88,7 @@ def compare_asked(
     asking = [experiment for experiment in experiments if experiment.measure.families or experiment.measure.compare]
     # a survey takes longest, and so begins first
     asking.sort(key=lambda experiment: not experiment.measure.families)
-    tasks = [task for experiment in asking for task in _tasks(experiment, meshes, done)]
+    tasks = [task for experiment in asking for task in _tasks(experiment, meshes, database, done)]
     lines: dict[int, list[str]] = {}
 
     def begin(place: int) -> None:
@@ -98,7 +103,7 @@ def compare_asked(
     return [line for _, mine in sorted(lines.items()) for line in mine]
 
 
-def _tasks(experiment: Experiment, meshes: Meshes, done: Collection[str]) -> Iterator[_Task]:
+def _tasks(experiment: Experiment, meshes: Meshes, database: Database, done: Collection[str]) -> Iterator[_Task]:
     if experiment.measure.families:
         wanted = [name for name in engines() if survey_key(experiment, meshes, name) not in done]
         if wanted:
@@ -112,28 +117,52 @@ def _tasks(experiment: Experiment, meshes: Meshes, done: Collection[str]) -> Ite
         return
     involved = {name for pair in left for name in pair}
     asked = {query: tuple(name for name in named if name in involved) for query, named in names.items()}
-    asked_events = tuple(name for name in events if (FRAMES, name) in left)
+    asked_events = tuple(name for name in events if (EXACT_FRAMES, name) in left)
     said = dict.fromkeys((*(name for named in asked.values() for name in named), *asked_events))
-    make = partial(_cross_check, experiment, meshes, asked, asked_events, left)
+    digests = database.history.values("event_digest", keys_of(experiment, meshes))
+    make = partial(_cross_check, experiment, meshes, asked, asked_events, left, digests)
     yield _Task(experiment, f"comparing {', '.join(said)}", make)
 
 
 def _cross_check(
-    experiment: Experiment, meshes: Meshes, asked: Asked, events: tuple[str, ...], keys: dict[Pair, str]
+    experiment: Experiment,
+    meshes: Meshes,
+    asked: Asked,
+    events: tuple[str, ...],
+    keys: dict[Pair, str],
+    digests: Mapping[str, Collection[float]],
 ) -> _Compared:
-    """Hold the methods of an experiment against each other."""
-    budget = Budget(_COMPARING)
+    """Hold the methods of an experiment against each other, and the timed runs of each against what it says here."""
+    asking, budget = Budget(_ASKING_AGAIN), Budget(_COMPARING)
+    otherwise = list(timed_otherwise(experiment, meshes, digests, asking))
+    budget.left += asking.left
     known: Known = {}
-    documents, lines = [], []
-    for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=events):
-        if pair not in keys:
-            continue
+    documents, lines, blamed = [], [], dict[str, None]()
+    found_of = {
+        pair: found
+        for pair, found in cross_check(experiment, meshes, asked, SWEPT, budget=budget, events=events)
+        if pair in keys
+    }
+    for name, reason in otherwise:
+        pair = next((pair for pair in found_of if name in pair), None)
+        if pair is not None:
+            found_of[pair].failures.append(Failure(pair, name, TIMED, 0, reason, kind="otherwise when timed"))
+    for pair, found in found_of.items():
         found.left_out += [line for line in budget.left_out if line not in found.left_out]
         rows = reductions(found, meshes, SHOWN, known)
         documents.append((pair, keys[pair], kept(experiment, found, rows)))
-        real, verdicts = len(found.cases), sum(tally.verdicts for tally in found.tallies)
-        lines.append(f"{' and '.join(pair)}: {verdicts} verdicts, {real} really disagree")
-    return _Compared(documents, [*lines, *(f"left out: {line}" for line in budget.left_out)])
+        lines.append(f"{' and '.join(pair)}: {_outcome(found)}")
+        blamed |= {failure.sentence: None for failure in found.failures}
+    return _Compared(documents, [*lines, *blamed, *(f"left out: {line}" for line in budget.left_out)])
+
+
+def _outcome(found: Comparison) -> str:
+    """What came of two methods, in a line."""
+    verdicts = sum(tally.verdicts for tally in found.tallies)
+    if not verdicts:
+        return "; ".join(found.unsupported) or "no verdict was compared"
+    both = f", both wrong in {len(found.shared)} that were judged" if found.shared else ""
+    return f"{verdicts} verdicts, {len(found.cases)} really disagree{both}"
 
 
 def _survey(experiment: Experiment, meshes: Meshes, wanted: Sequence[str]) -> _Compared:

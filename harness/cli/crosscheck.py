@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from statistics import fmean
@@ -21,8 +21,8 @@ from harness.backends.statement import missing
 from harness.compare.budget import Budget
 from harness.compare.comparison import Found, compare_all
 from harness.compare.document import Known, Reduced, document, reduced, shown_case
-from harness.compare.event_audit import FRAMES, audit_events
-from harness.compare.free_running import run_both
+from harness.compare.event_audit import audit_events
+from harness.compare.free_running import digest_when_asked, run_both
 from harness.compare.hard_questions import hard_questions
 from harness.compare.outcome import Comparison
 from harness.compare.poses import PoseSet, flown
@@ -38,13 +38,13 @@ from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 from harness.scene.scene_files import Opened
-from harness.vocabulary import MethodName, Query, algorithms_of
+from harness.vocabulary import EXACT_FRAMES, LIBRARY_IMPACTS, MethodName, PipelineName, Query, algorithms_of
 
 DEFAULT: Mapping[Query, tuple[str, str]] = {
     "collision": ("fcl", "pybullet"),
     "tolerance": ("fcl", "pybullet"),
     "distance": ("fcl", "pybullet"),
-    "impact": ("fcl", "fcl/native"),
+    "impact": ("fcl", LIBRARY_IMPACTS),
 }
 """What is compared where an experiment names fewer than two."""
 
@@ -100,7 +100,7 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[A
     for query in dict.fromkeys(method.query for method in methods):
         named = tuple(dict.fromkeys(one.short for one in methods if one.stepped and one.query == query))
         wanted = chosen or (named if len(named) > 1 else DEFAULT[query])
-        lacking = {name: why for name in wanted if (why := missing(name.partition("/")[0])) is not None}
+        lacking = {name: why for name in wanted if (why := missing(PipelineName.read(name).backend)) is not None}
         if chosen and lacking:
             raise InputError("\n".join(lacking.values()))
         _refuse_algorithms(chosen, query)
@@ -117,8 +117,8 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[A
 def _refuse_algorithms(names: Sequence[str], query: Query) -> None:
     """Raises InputError for a method that some query can be put to, but not this one."""
     for name in names:
-        backend, stroke, algorithm = name.partition("/")
-        if stroke and algorithm not in (possible := algorithms_of(backend, query)):
+        backend, algorithm = PipelineName.read(name)
+        if algorithm is not None and algorithm not in (possible := algorithms_of(backend, query)):
             raise InputError(
                 f"--backends: {backend} cannot be asked query {query} with algorithm {algorithm}, only with "
                 f"{', '.join(possible)}"
@@ -128,7 +128,7 @@ def _refuse_algorithms(names: Sequence[str], query: Query) -> None:
 def pairs_of(names: Asked, events: Sequence[str] = ()) -> list[tuple[str, str]]:
     """Every two methods that are held against each other, of any query; last those that compute events."""
     found = [pair for asked in names.values() for pair in combinations(asked, 2)]
-    return [*dict.fromkeys(found), *((FRAMES, name) for name in events)]
+    return [*dict.fromkeys(found), *((EXACT_FRAMES, name) for name in events)]
 
 
 def event_methods(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -157,7 +157,7 @@ def cross_check(
     budget = budget or Budget()
     for name in events:
         progress(f"{name}: contacts of the same motion")
-        yield (FRAMES, name), _events(experiment, meshes, name, extent, budget)
+        yield (EXACT_FRAMES, name), _events(experiment, meshes, name, extent, budget)
     compared: Found = {}
     queries = [(query, asked) for query, asked in names.items() if len(asked) > 1]
     # what a question leaves of its share goes to those after it: that of touching surfaces takes longest to judge
@@ -215,6 +215,50 @@ def key_of(
     limits = [budget.seconds, budget.every] if budget and (budget.seconds or budget.every > 1) else []
     content = json.dumps([points, pair, repr(extent), package_versions(packages()), *limits])
     return hashlib.sha256(content.encode()).hexdigest()
+
+
+def keys_of(experiment: Experiment, meshes: Meshes) -> list[str]:
+    """The keys of the points whose answers `timed_otherwise` holds against what is said here."""
+    return [point_key(point, files_of(experiment, point, meshes)) for point in _asked_of_a_library(experiment)]
+
+
+def timed_otherwise(
+    experiment: Experiment, meshes: Meshes, digests: Mapping[str, Collection[float]], budget: Budget
+) -> Iterator[tuple[str, str]]:
+    """Backends whose runs answered other hits than they answer when the same motion is put to them frame by frame.
+
+    Parameters
+    ----------
+    digests : by the key of a point, the `event_digest` of its runs; one whose runs differ is known to be random
+    budget : ends it early, and keeps what was left out
+
+    Yields
+    ------
+    tuple of str
+        A backend, and what is wrong, each once.
+    """
+    told: set[str] = set()
+    for point in _asked_of_a_library(experiment):
+        name = point.engine.backend
+        answered = digests.get(point_key(point, files_of(experiment, point, meshes)), ())
+        if name in told or len(answered) != 1 or (scene := _scene(experiment, point, meshes)) is None:
+            continue
+        digest = None if budget.spent else digest_when_asked(scene, name, law_of(point, scene), budget)
+        if digest is None and budget.spent:
+            budget.leave_out(f"{name}: its timed runs", how=f"not held against what it says here, {budget.why}")
+        if digest is not None and digest not in answered:
+            told.add(name)
+            yield (
+                name,
+                "in its timed runs it answered other hits than it does when it is asked about the same frames in a "
+                "process of its own",
+            )
+
+
+def _asked_of_a_library(experiment: Experiment) -> list[Point]:
+    """The points that ask a library alone whether bodies touch."""
+    points = [point for point in experiment.points if point.engine.query == "collision"]
+    return [point for point in points if MethodName.of(point.parameters).short == point.engine.backend]
 
 
 def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:

@@ -1,4 +1,4 @@
-"""`harness view --live`: the first point of an experiment, with settings that a person changes on a page."""
+"""`harness view --live`: the first point of an experiment, with inputs that a person changes on a page."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from harness.experiment.leaves import LEAVES, plain
 from harness.experiment.load import load_text
 from harness.replay.document import document
 from harness.replay.live import LiveServer
-from harness.replay.page import Setting, live_page
+from harness.replay.page import Input, live_page
 from harness.runner.preparation import known_names
 from harness.runner.scene_of_point import derived_parameters, mean_size
 from harness.runner.servers import Servers, files_of, task_of
@@ -46,13 +46,13 @@ def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -
     show : opens an address
     """
     heed(signal.SIGINT)  # also where a shell has started it in the background
-    settings = _settings(experiment, meshes)
+    inputs = _inputs(experiment, meshes)
     with Servers() as servers:
 
         def answer(asked: Mapping[str, str]) -> Mapping[str, Any]:
-            return _answer(experiment, meshes, servers, {one.name: one.value for one in settings}, asked)
+            return _answer(experiment, meshes, servers, {one.name: one.value for one in inputs}, asked)
 
-        with LiveServer(live_page(experiment.title, settings, COLUMNS), answer) as server:
+        with LiveServer(live_page(experiment.title, inputs, COLUMNS), answer) as server:
             print(f"{server.address}  (Ctrl-C stops it)", flush=True)
             show(server.address)
             with suppress(KeyboardInterrupt):
@@ -61,31 +61,31 @@ def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -
     return 0
 
 
-def _settings(experiment: Experiment, meshes: Meshes) -> list[Setting]:
-    """The settings of the page, with the values of the first point."""
+def _inputs(experiment: Experiment, meshes: Meshes) -> list[Input]:
+    """The inputs of the page, with the values of the first point."""
     point = experiment.points[0]
     leaves = point.parameters
     files = files_of(experiment, point, meshes)
     shapes = ("sphere",) if not point.scene.mesh_names else ("sphere", "hull", "mesh")
     found = [
-        Setting("algorithm", "algorithm", leaves["algorithm"], tuple(ALGORITHMS)),
-        Setting("backend", "backend", leaves["backend"], tuple(registry.names())),
-        Setting("shape", "shape", leaves["shape"], shapes),
+        Input("algorithm", "algorithm", leaves["algorithm"], tuple(ALGORITHMS)),
+        Input("backend", "backend", leaves["backend"], tuple(registry.names())),
+        Input("shape", "shape", leaves["shape"], shapes),
     ]
     if point.motion.poses is not None:
         return found
     ratio = leaves["box_ratio"] or mean_size(point, files) ** 2 / derived_parameters(point, files)["box_side"] ** 2
-    found.append(Setting("box_ratio", "box ratio (size / side)²", f"{ratio:.4g}"))
+    found.append(Input("box_ratio", "box ratio (size / side)²", f"{ratio:.4g}"))
     if point.scene.bodies is None:  # bodies that are given one by one have their number and speeds
-        found.insert(3, Setting("count", "number of bodies", str(leaves["count"]), inputmode="numeric"))
-        found.append(Setting("speed", "speed, m/s", json.dumps(leaves["speed"]).replace('"', ""), inputmode="text"))
+        found.insert(3, Input("count", "number of bodies", str(leaves["count"]), inputmode="numeric"))
+        found.append(Input("speed", "speed, m/s", json.dumps(leaves["speed"]).replace('"', ""), inputmode="text"))
     return found
 
 
 def _answer(
     experiment: Experiment, meshes: Meshes, servers: Servers, first: Mapping[str, str], asked: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Run the first point with the changed settings: once measured, once recorded."""
+    """Run the first point with the changed inputs: once measured, once recorded."""
     changed = {name: text for name, text in asked.items() if name in first and text.strip() != first[name]}
     try:
         now = load_text(_first_point_alone(experiment), experiment.path, changed, known_names())
@@ -120,9 +120,7 @@ def _first_point_alone(experiment: Experiment) -> str:
 
 
 def _sentence(message: str) -> str:
-    said = message.removeprefix(
-        "--set "
-    )  # settings are passed on as overrides, which the user of the page has not typed
+    said = message.removeprefix("--set ")  # inputs are passed on as overrides, which the user of the page has not typed
     text = said if said != message else said[0].upper() + said[1:]
     return text if text.endswith(".") else f"{text}."
 

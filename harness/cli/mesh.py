@@ -1,24 +1,10 @@
 """Make, inspect, simplify and weld mesh files.
 
+for example:
   harness mesh make pumpkin --faces 1753
   harness mesh inspect meshes/*.ply
   harness mesh simplify duck.obj --faces 1000 --out duck-1000.ply
   harness mesh weld scan.stl --within 1e-6 --out scan-welded.ply
-
-what is read of a file, told by the end of its name:
-  .obj  v and f: any white space, # anywhere, lines continued by \\, indices from 1
-        or backwards from where they stand, with or without texture and normal
-  .ply  text, or binary in either order of bytes: vertex x y z and face
-        vertex_indices of any types; other elements and properties passed over
-  .stl  binary, with any header and any bytes behind the faces; text, keywords in
-        any case, any names, several solids
-  .off  OFF, COFF, NOFF, STOFF as text, comments; colours and normals passed over
-  .glb  glTF 2.0: triangles and strips of the scene, placed by its nodes
-Polygons of any number of corners are cut into triangles by ear clipping in their
-own plane; faces without area are left out and counted. A mesh in one plane is
-read, and has shape mesh alone. Text may be in any encoding
-that holds ASCII. Not read: triangle strips of PLY, binary OFF, compressed, sparse
-or normalised glTF, free-form surfaces, UTF-16.
 """
 
 from __future__ import annotations
@@ -26,10 +12,12 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.width import say
 from harness.errors import InputError, Problem
+from harness.vocabulary import MESH_FORMATS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,8 +43,18 @@ FACTS = (
 )
 
 
+FORMATS_HEADING = "what is read of a file, told by the end of its name:"
+FORMATS_NOTES = """\
+Polygons of any number of corners are cut into triangles by ear clipping in their
+own plane; faces without area are left out and counted. A mesh in one plane is
+read, and has shape mesh alone. Text may be in any encoding
+that holds ASCII. Not read: triangle strips of PLY, binary OFF, compressed, sparse
+or normalised glTF, free-form surfaces, UTF-16."""
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command takes."""
+    parser.epilog = "\n".join([FORMATS_HEADING, *map(_format_line, MESH_FORMATS), FORMATS_NOTES])
     actions = parser.add_subparsers(dest="action", required=True, metavar="make|inspect|simplify|weld")
     make = actions.add_parser("make", help="write a solid with a given number of faces")
     make.add_argument("solid", choices=SOLIDS)
@@ -86,6 +84,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Make, inspect or simplify; wrong input is raised."""
     arguments.act(arguments)
     return 0
+
+
+def _format_line(name: str) -> str:
+    return fill(MESH_FORMATS[name], 76, initial_indent=f"  .{name}  ", subsequent_indent=8 * " ")
 
 
 def _make(arguments: argparse.Namespace) -> None:

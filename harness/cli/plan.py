@@ -83,8 +83,8 @@ def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
         stages = [asdict(stage) for stage in plan.stages]
         runs.append({"parameters": point.parameters, "stages": stages, "warnings": list(plan.warnings)})
     planned = {"title": experiment.title, "swept": list(experiment.swept), "runs": runs, "lacking": [*lacking.values()]}
-    strangers = {point.engine.backend for point in experiment.points if not ours(point.engine.backend)}
-    if experiment.path == Path(path) and len(runs) <= _MOST_KEPT and not strangers:
+    plugins = {point.engine.backend for point in experiment.points if not ours(point.engine.backend)}
+    if experiment.path == Path(path) and len(runs) <= _MOST_KEPT and not plugins:
         of_file = experiment.source, experiment.mesh_paths, experiment.poses_paths
         keep_facts("plan", experiment.path, overrides, *of_file, planned)
     return planned

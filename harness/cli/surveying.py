@@ -31,7 +31,7 @@ from harness.runner.scene_of_point import build_scene
 from harness.runner.servers import files_of
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from harness.vocabulary import OWN_BACKEND, Family, Shape
+from harness.vocabulary import EXACT_FRAMES, Family, Shape
 from harness.workers import shared_out
 
 # s for the atlas of an experiment within a sweep; `harness compare` takes as long as it takes.
@@ -99,7 +99,7 @@ class Surveyed:
 
 def engines(chosen: Sequence[str] = ()) -> tuple[str, ...]:
     """The engines of an atlas: those chosen, else all that are installed, and the grid of this program."""
-    return tuple(chosen) or (*(name for name in declared() if missing(name) is None), f"{OWN_BACKEND}/grid")
+    return tuple(chosen) or (*(name for name in declared() if missing(name) is None), EXACT_FRAMES)
 
 
 @dataclass(frozen=True)

@@ -146,8 +146,8 @@ def _ask(arguments: argparse.Namespace) -> int:
         _open(arguments.db).close()  # before the work, not after it
     given = read_set(Path(arguments.folder))
     there = dict.fromkeys(given.cases.families.tolist())
-    if strangers := [name for name in arguments.families if name not in there]:
-        raise InputError(f"there is no family {', '.join(strangers)} in the set; there are {', '.join(there)}")
+    if unknown := [name for name in arguments.families if name not in there]:
+        raise InputError(f"there is no family {', '.join(unknown)} in the set; there are {', '.join(there)}")
     rows = chosen(given, arguments.families, arguments.every)
     asked = {
         question: ask(given, question, rows, arguments.within, arguments.timeout, _progress)

@@ -91,7 +91,7 @@ def _examined(paths: list[Path], overrides: dict[str, str]) -> tuple[dict[Path, 
         points, runs = len(experiment.points), experiment.runs
         text = f"{points} point{'s' * (points != 1)}, {runs} run{'s' * (runs != 1)}"
         valid[experiment.path] = text
-        if all(map(ours, {point.engine.backend for point in experiment.points})):  # a stranger's is asked each time
+        if all(map(ours, {point.engine.backend for point in experiment.points})):  # a plugin is asked each time
             of_file = experiment.source, experiment.mesh_paths, experiment.poses_paths
             keep_facts("validate", experiment.path, overrides, *of_file, {"valid": text})
     return valid, prepared.lacking, prepared.problems

@@ -23,10 +23,8 @@ from harness.methods.registry import method_of
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
-from harness.vocabulary import MethodName
+from harness.vocabulary import EXACT_FRAMES, MethodName
 
-FRAMES = "fcl/grid"
-"""Whose frames propose where contacts begin."""
 # A time and the places at it are rounded: of the coordinates and of what moves in that time.
 _ROUNDING = 1e-12
 
@@ -58,12 +56,12 @@ class _EventAudit:
         self._scene, self._name = scene, name
         self._tolerance = 0.0 if scene.shape == "sphere" else tolerance
         self._trajectory = Trajectory(scene.bodies, scene.box, folded=True, turning=scene.shape != "sphere")
-        self._tally = Tally((FRAMES, name), scene.shape)
+        self._tally = Tally((EXACT_FRAMES, name), scene.shape)
         self._found = Comparison([self._tally])
 
     def check(self, frames: int, dt: float, budget: Budget) -> Comparison:
         onsets = self._onsets(MotionLaw(frames * dt, dt, "none"))
-        detector = AtPoses(MethodName.read(FRAMES, self._scene.shape))
+        detector = AtPoses(MethodName.read(EXACT_FRAMES, self._scene.shape))
         detector.load(self._scene)
         before: set[Pair] = set()
         earlier: set[Pair] = set()  # pairs that have touched in their present approach
@@ -126,7 +124,9 @@ class _EventAudit:
             self._tally.undecided += 1
 
     def _case(self, pair: Pair, truth: Judgement, pose: Pose, frame: int) -> Case:
-        return Case((FRAMES, self._name), self._name, pair, truth, scene=self._scene, pose=pose, query_index=frame + 1)
+        return Case(
+            (EXACT_FRAMES, self._name), self._name, pair, truth, scene=self._scene, pose=pose, query_index=frame + 1
+        )
 
     def _band(self, pair: Pair, pose: Pose, time: float) -> float:
         """m"""

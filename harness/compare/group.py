@@ -11,13 +11,10 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-import numpy as np
-
-from harness.arrays import Floats
 from harness.compare.isolated import BrokenError, Facts, HangingError, Isolated, UnusableError
 from harness.compare.question import COLLISION, Question
 from harness.compare.tally import NamePair
-from harness.scene.hull import Hull
+from harness.scene.hull import Hull, hull_of, is_convex, outside
 from harness.scene.scene import Scene
 
 LARGEST_TOLERANCE = 1e-3
@@ -111,9 +108,14 @@ def unacceptable(facts: Facts, scene: Scene) -> str | None:
     for tolerance, what in ((facts.tolerance, "tolerance"), (facts.hulls_tolerance, "tolerance for its own hulls")):
         if not 0.0 <= tolerance <= LARGEST_TOLERANCE:
             return f"it declares a {what} of {tolerance:g} of a size; at most {LARGEST_TOLERANCE:g} is accepted"
+    held = set(scene.solids)
     for (mesh, size), hull in facts.hulls.items():
+        if (mesh, size) not in held:
+            return f"it declares a hull of its own for {size} m of mesh {mesh}, which no body of the scene has"
+        if not is_convex(hull, _ROUNDED * size):
+            return f"its hull of a body of {size:g} m is no closed convex surface with these vertices"
         solid = scene.solid_of(size, mesh)
-        off = _apart(hull, solid.vertices, solid.faces) / size
+        off = _apart(hull, hull_of(solid.vertices, solid.faces)) / size
         if not off <= facts.tolerance:
             return (
                 f"its hull of a body of {size:g} m is {off:.2g} of the size off the scene's; it declares a tolerance "
@@ -122,18 +124,10 @@ def unacceptable(facts: Facts, scene: Scene) -> str | None:
     return None
 
 
-def _apart(hull: Hull, vertices: Floats, faces: np.ndarray[tuple[int, ...], np.dtype[np.int32]]) -> float:
+# Of a size: by how much vertices of a hull may be outside of its own faces, whose normals a sliver rounds.
+_ROUNDED = 1e-6
+
+
+def _apart(hull: Hull, other: Hull) -> float:
     """m, how far a vertex of either convex solid lies outside of the other, along the normal of a face."""
-    return max(_outside(hull.vertices, vertices, faces), _outside(vertices, hull.vertices, hull.faces))
-
-
-def _outside(points: Floats, vertices: Floats, faces: np.ndarray[tuple[int, ...], np.dtype[np.int32]]) -> float:
-    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
-    normals = np.cross(b - a, c - a)
-    areas = np.linalg.norm(normals, axis=1)
-    # the normal of a sliver is mostly rounding
-    proper = areas > 1e-9 * float(areas.max())
-    normals = normals[proper] / areas[proper, None]
-    # not by BLAS, whose threads wait longer than this takes
-    heights = np.einsum("ij,kj->ik", points, normals) - np.einsum("ij,ij->i", normals, a[proper])
-    return float(heights.max())
+    return max(outside(hull.vertices, other), outside(other.vertices, hull))

@@ -69,14 +69,19 @@ LOADING = "loading"
 """In the place of the name of a pose: as the backend was given the scene."""
 
 
+TIMED = "timed runs"
+"""In the place of the name of a pose: in the runs of a sweep, which were timed before."""
+
+
 @dataclass(frozen=True)
 class Failure:
     """A backend that crashed, hung or raised at a pose, or cannot be held to what it says; `query_index` as in `Case`.
 
     Parameters
     ----------
-    pose : its name, or `LOADING`
-    kind : "crashed"; "random" or "depends on order" for a verdict that changes; "claim" for what it says of itself
+    pose : its name, or `LOADING`, or `TIMED`
+    kind : "crashed"; "random" or "depends on order" for a verdict that changes; "claim" for what it says of itself;
+        "otherwise when timed" for runs that do not answer as it answers here
     bodies : of the pair whose verdict changes
     """
 
@@ -87,6 +92,18 @@ class Failure:
     reason: str
     kind: str = "crashed"
     bodies: tuple[int, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """For people, without a full stop.
+
+        >>> Failure(("a", "b"), "a", LOADING, 0, "it declares a tolerance of 2 of a size", kind="claim").sentence
+        'a is wrong: it declares a tolerance of 2 of a size'
+        """
+        where = "before it was asked anything" if self.pose == LOADING else f"at {self.pose} (call {self.query_index})"
+        if self.kind in ("claim", "otherwise when timed"):
+            return f"{self.backend} is wrong: {self.reason}"
+        return f"{self.backend} {'failed' if self.kind == 'crashed' else 'is wrong'} {where}: {self.reason}"
 
 
 @dataclass

@@ -96,7 +96,7 @@ def script_of(case: Case) -> str | None:
     ----------
     case : of two bodies
     """
-    call = CALLS.get((case.wrong.partition("/")[0], case.scene.shape)) if "/" not in case.wrong else None
+    call = CALLS.get((case.wrong, case.scene.shape))  # of libraries alone: methods of this program have none
     if call is None or case.question.query != "collision" or len(case.scene.bodies) != 2:
         return None
     text = _written(case, call)

@@ -1,34 +1,21 @@
 """Which values of leaves cannot stand together, and why. Every such rule is here, once.
 
 A rule is a function of leaf values (all leaves of the parts it looks at, defaults filled in) that returns a `Conflict`
-or None. Add a rule by writing it and naming it in one of the tuples at the end.
+or None. Add a rule by writing it and naming it in one of the tuples at the end. What a backend can be asked it says
+itself: `point_rules` are told.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from harness.experiment.messages import listed
-from harness.vocabulary import ALGORITHMS, NATIVE, NEAR_QUERIES, QUERIES, Query, algorithms_of
+from harness.vocabulary import ALGORITHMS, NATIVE, NEAR_QUERIES, Abilities, algorithms_of
 
 Values = Mapping[str, Any]
-
-# The shapes of a backend that lacks one; what a backend from elsewhere holds is known when it is asked.
-SHAPES = {"trimesh": ("hull", "mesh"), "cgal": ("mesh",), "drake": ("sphere", "hull"), "ipctk": ("mesh",)}
-
-# Those whose gaps it tells, where it does not of all.
-SHAPES_WITH_GAPS = {"rapier3d": ("sphere", "hull")}
-
-# What a backend's own pipeline can be asked; what one from elsewhere can is known when it is asked.
-NATIVE_QUERIES: dict[str, tuple[Query, ...]] = {
-    **dict.fromkeys(("coal", "drake", "mujoco", "pybullet", "trimesh"), ("collision", "tolerance", "distance")),
-    "cgal": ("collision",),
-    "ipctk": ("collision", "impact"),
-    "mujoco_warp": ("collision",),
-    "parry3d": ("collision", "tolerance"),
-}
 
 
 @dataclass(frozen=True)
@@ -150,24 +137,6 @@ def backend_has_the_algorithm(values: Values) -> Conflict | None:
     return None
 
 
-def backend_has_the_shape(values: Values) -> Conflict | None:
-    """What a library cannot hold it cannot be asked about."""
-    backend, shapes = values["backend"], SHAPES.get(values["backend"])
-    if shapes is not None and values["shape"] not in shapes:
-        message = f"backend {backend} has no shape {{}}, only {listed(shapes)}"
-        return Conflict(message, ("backend", "shape"), excludable=True)
-    return None
-
-
-def backend_has_gaps_of_the_shape(values: Values) -> Conflict | None:
-    """What a library tells of some shapes it may not tell of all."""
-    backend, query, shapes = values["backend"], values["query"], SHAPES_WITH_GAPS.get(values["backend"])
-    if query in NEAR_QUERIES and shapes is not None and values["shape"] not in shapes:
-        message = f"backend {backend} has no gaps of shape {{}}, only of {listed(shapes)}"
-        return Conflict(message, ("backend", "query", "shape"), excludable=True)
-    return None
-
-
 def within_is_asked_for(values: Values) -> Conflict | None:
     """Only the queries about pairs that are near need to know how near."""
     query, within = values["query"], values["within"]
@@ -188,16 +157,6 @@ def algorithm_answers_the_query(values: Values) -> Conflict | None:
     if query not in answered:
         message = f"algorithm {algorithm} cannot be asked query {{}}, only {listed(answered)}"
         return Conflict(message, ("algorithm", "query"), excludable=True)
-    return None
-
-
-def backend_answers_the_query(values: Values) -> Conflict | None:
-    """Methods of this program answer every query by kernels of their own; a library what it has been taught."""
-    backend, query = values["backend"], values["query"]
-    answered = NATIVE_QUERIES.get(backend, tuple(QUERIES))
-    if not ALGORITHMS[values["algorithm"]].own and query not in answered:
-        message = f"backend {backend} cannot be asked query {{}}, only {listed(answered)}"
-        return Conflict(message, ("backend", "query"), excludable=True)
     return None
 
 
@@ -244,7 +203,6 @@ ENGINE: tuple[Rule, ...] = (
     backend_has_the_algorithm,
     within_is_asked_for,
     algorithm_answers_the_query,
-    backend_answers_the_query,
     threads_have_pairs_to_share,
 )
 POINT: tuple[Rule, ...] = (
@@ -252,9 +210,50 @@ POINT: tuple[Rule, ...] = (
     has_a_box,
     *MOTION,
     *ENGINE,
-    backend_has_the_shape,
-    backend_has_gaps_of_the_shape,
     poses_are_frames,
     poses_say_where_bodies_are,
     bodies_pass_through,
 )
+
+AbilitiesOf = Callable[[str], Abilities]
+"""What the backend of a name can be asked."""
+
+
+def point_rules(abilities_of: AbilitiesOf | None = None) -> tuple[Rule, ...]:
+    """The rules for all leaves of a point; without abilities nothing is known of backends."""
+    if abilities_of is None:
+        return POINT
+    of_backends = (backend_answers_the_query, backend_has_the_shape, backend_has_gaps_of_the_shape)
+    return (*POINT, *(partial(rule, abilities_of) for rule in of_backends))
+
+
+def backend_answers_the_query(abilities_of: AbilitiesOf, values: Values) -> Conflict | None:
+    """Methods of this program answer every query by kernels of their own; a library what it has been taught."""
+    if ALGORITHMS[values["algorithm"]].own:
+        return None
+    backend, query = values["backend"], values["query"]
+    answered = abilities_of(backend).queries
+    if answered is not None and query not in answered:
+        message = f"backend {backend} cannot be asked query {{}}, only {listed(answered)}"
+        return Conflict(message, ("backend", "query"), excludable=True)
+    return None
+
+
+def backend_has_the_shape(abilities_of: AbilitiesOf, values: Values) -> Conflict | None:
+    """What a library cannot hold it cannot be asked about."""
+    backend = values["backend"]
+    shapes = abilities_of(backend).shapes
+    if shapes is not None and values["shape"] not in shapes:
+        message = f"backend {backend} has no shape {{}}, only {listed(shapes)}"
+        return Conflict(message, ("backend", "shape"), excludable=True)
+    return None
+
+
+def backend_has_gaps_of_the_shape(abilities_of: AbilitiesOf, values: Values) -> Conflict | None:
+    """What a library tells of some shapes it may not tell of all."""
+    backend, query = values["backend"], values["query"]
+    shapes = abilities_of(backend).gap_shapes
+    if query in NEAR_QUERIES and shapes is not None and values["shape"] not in shapes:
+        message = f"backend {backend} has no gaps of shape {{}}, only of {listed(shapes)}"
+        return Conflict(message, ("backend", "query", "shape"), excludable=True)
+    return None

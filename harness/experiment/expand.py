@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
 
-from harness.experiment.combinations import POINT, Conflict, conflicts
+from harness.experiment.combinations import AbilitiesOf, Conflict, Rule, conflicts, point_rules
 from harness.experiment.declaration import Axis, Declaration, ExcludeRow, LeafValue
 from harness.experiment.document import KEY
 from harness.experiment.experiment import Point, Reference
@@ -43,10 +43,16 @@ class Expansion:
     origins: dict[tuple[str, str], Origin] = field(default_factory=dict)
 
 
-def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblems) -> Expansion:
+def expand(
+    declaration: Declaration,
+    measure: MeasureSpec,
+    problems: FileProblems,
+    abilities_of: AbilitiesOf | None = None,
+) -> Expansion:
     """All points of a checked declaration; none if there are problems.
 
-    Too many runs are refused by the lengths of the lists, before any point is made.
+    Too many runs are refused by the lengths of the lists, before any point is made. Without `abilities_of`, what
+    backends can be asked is not looked at.
     """
     axes = [_without_duplicates(axis) for axis in declaration.axes]
     combinations = math.prod(len(axis.rows) for axis in axes)
@@ -77,9 +83,10 @@ def expand(declaration: Declaration, measure: MeasureSpec, problems: FileProblem
     if not resolved:
         problems.add(("exclude", KEY), "every point is excluded")
     varying = {leaf for axis in axes if len(axis.rows) > 1 for leaf in axis.leaves}
-    _add_conflicts(product_points, varying, problems)
+    rules = point_rules(abilities_of)
+    _add_conflicts(product_points, rules, varying, problems)
     for point in included:
-        _add_conflicts([point], set(), problems)
+        _add_conflicts([point], rules, set(), problems)
     expansion = Expansion(origins=_origins(resolved))
     if not problems.found:
         mentioned = [leaf for leaves in (*(axis.leaves for axis in axes), *declaration.include) for leaf in leaves]
@@ -200,12 +207,14 @@ class _Matcher:
         )
 
 
-def _add_conflicts(points: Iterable[Resolved], varying: set[str], problems: FileProblems) -> None:
+def _add_conflicts(
+    points: Iterable[Resolved], rules: Sequence[Rule], varying: set[str], problems: FileProblems
+) -> None:
     """Report each kind of conflict once, with the `exclude` row that would take all of its points out."""
     kinds: dict[tuple[Any, ...], tuple[Conflict, Resolved, dict[str | None, Any]]] = {}
     for point in points:
         values = {leaf: given.value for leaf, given in point.items() if given.identity is not None}
-        for conflict in conflicts(values, POINT):
+        for conflict in conflicts(values, rules):
             fixed = tuple(point[leaf].identity for leaf in conflict.leaves[:-1]) if conflict.excludable else ()
             _, _, last = kinds.setdefault((conflict.message, *fixed), (conflict, point, {}))
             last.setdefault(point[conflict.leaves[-1]].identity, values[conflict.leaves[-1]])

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from harness.errors import InputError, NotInstalledError, Problem
+from harness.experiment.combinations import AbilitiesOf
 from harness.experiment.criterion import Criterion
 from harness.experiment.declaration import apply_override, check, check_backends, declare
 from harness.experiment.document import KEY, KeyPath, read_document, read_value
@@ -40,10 +41,12 @@ _Model = TypeVar("_Model", bound=BaseModel)
 
 @dataclass(frozen=True)
 class Names:
-    """Names that only other rooms know."""
+    """Names that only other folders know, and what stands behind them."""
 
     backends: Collection[str]
     metrics: Collection[str]
+    abilities_of: AbilitiesOf | None = None
+    """What a backend of these can be asked; None to look at none of that."""
 
 
 def load(path: str | os.PathLike[str], set: Mapping[str, object] = _NOTHING, names: Names | None = None) -> Experiment:
@@ -99,7 +102,8 @@ def load_text(
     report = _section(ReportSpec, file, "report", problems)
     if names is not None:
         _check_metrics(file, names.metrics, problems)
-    expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), problems)
+    abilities_of = names.abilities_of if names is not None else None
+    expansion = expand(declaration, measure or MeasureSpec(repeats=1, max_runs=MOST_RUNS), problems, abilities_of)
     meshes = _locate_meshes(expansion, path.parent, problems)
     poses = _locate_poses(expansion, path.parent, problems)
     problems.raise_any()

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from harness.errors import InputError, NotInstalledError
 from harness.experiment.messages import near, shown
+from harness.vocabulary import MESH_FORMATS
 
 PACKAGE = "package:"
-SUFFIXES = (".ply", ".obj", ".stl", ".off", ".glb")  # of what is read, which alone is suggested
 _MOST_LISTED = 1000
 # what brings a package whose own name does not say so
 _BROUGHT_BY = {"pybullet_data": "pip install 'harness[pybullet]'"}
@@ -91,7 +91,7 @@ def _file(root: Path, relative: str) -> Path | None:
 def _meshes_in(root: Path) -> Iterator[str]:
     try:
         for path in islice(root.iterdir(), _MOST_LISTED):
-            if path.suffix.lower() in SUFFIXES:
+            if path.suffix.lower().removeprefix(".") in MESH_FORMATS:  # what is read, which alone is suggested
                 yield path.name
     except OSError:
         return

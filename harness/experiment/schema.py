@@ -151,7 +151,9 @@ class MotionSpec(Declared):
         description="recorded poses, an .npz file beside the experiment, instead of duration, dt, response, speeds",
     )
     duration: NotNegative = Field(10.0, description="simulated time, s")
-    dt: Positive = Field(1 / 60, description="time from frame to frame, s; for predictive, from sample to sample")
+    dt: Positive = Field(
+        1 / 60, description="time from frame to frame, s (no effect on an algorithm that computes events)"
+    )
     response: Response = Field("reflect", description="a hit flips velocities, passes impulse, does nothing")
     restitution: Annotated[Number, Field(ge=0, le=1)] = Field(1.0, description="of elastic hits, 0 to 1")
 

@@ -117,7 +117,7 @@ def clock(
     tabulated: bool = True,
     elapsed_tabulated: bool = False,
 ) -> tuple[Metric, Metric]:
-    """CPU time of a phase, or a rate made from it, and its twin in elapsed time."""
+    """CPU time of a phase, or a rate made from it, and the same in elapsed time."""
     return (
         Metric(name, unit, "cost", f"CPU time: {meaning}", title, better, noisy=True, clock=True, tabulated=tabulated),
         Metric(

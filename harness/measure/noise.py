@@ -179,7 +179,7 @@ def sign_test(logs: NDArray[np.float64], known: Control) -> float:
     logs : logarithms of paired ratios, five or more, in order
     """
     n = len(logs)
-    place = interval_place(n)[0]
+    place, _ = interval_place(n)
     nearest = max(float(logs[place]), -float(logs[n - 1 - place]))
     if nearest <= 0.0:
         return 1.0

@@ -67,7 +67,7 @@ class Verdict:
         return {"groups": [asdict(group) for group in self.groups]}
 
 
-def judge(
+def verdict_on(
     criterion: Criterion,
     runs: pd.DataFrame,
     swept: Sequence[str],

@@ -97,7 +97,7 @@ class KernelImpacts:
 
     def __init__(self, scene: Scene, broad_phase: Callable[[Floats], BroadPhase], tolerance: float) -> None:
         self._scene, self._make, self._tolerance = scene, broad_phase, tolerance
-        self._room = scene.box.half - scene.bodies.radii[:, None]
+        self._inner_half = scene.box.half - scene.bodies.radii[:, None]
         self._search, self._reach = _search_of(scene)
         self._tests = self._given_up = 0
         self._spheres = scene.shape == "sphere"
@@ -124,7 +124,7 @@ class KernelImpacts:
             motion.quaternions,
             motion.velocities,
             motion.spins,
-            self._room,
+            self._inner_half,
             self._scene.bodies.sizes,
             self._reach,
             motion.duration,

@@ -7,8 +7,8 @@ from typing import cast
 
 import numpy as np
 
-from harness.arrays import Flags, Floats
-from harness.backends.contract import read_only, require_gaps, require_impacts, require_pairs
+from harness.arrays import Flags, Floats, Pairs
+from harness.backends.contract import made, read_only, require_counters, require_gaps, require_impacts, require_pairs
 from harness.backends.protocol import Distances, Impacts, ImpactTimes, Near, NearPairs
 from harness.methods.impact_times import FrameMotion
 from harness.motion.kinematics import turn
@@ -35,13 +35,13 @@ class NativeNearPairs:
 
     @property
     def counters(self) -> Mapping[str, float]:
-        return dict(getattr(self._backend, "counters", {}))
+        return require_counters(self._backend.name, getattr(self._backend, "counters", {}))
 
     def near(self, positions: Floats, quaternions: Floats) -> NearPairs:
         poses = read_only(positions), read_only(quaternions)
         if not self._gapless:
-            return cast(Distances, self._backend).distances(*poses, self._within)
-        pairs = cast(Near, self._backend).near(*poses, self._within)
+            return cast(NearPairs, made(cast(Distances, self._backend).distances(*poses, self._within)))
+        pairs = cast(Pairs, made(cast(Near, self._backend).near(*poses, self._within)))
         return NearPairs(pairs, np.full(len(pairs), np.nan), None)
 
     def checked(self, found: NearPairs) -> NearPairs:
@@ -66,18 +66,18 @@ class NativeImpacts:
 
     def __init__(self, backend: Impacts, scene: Scene) -> None:
         self._backend, self._count, self._ignored = backend, len(scene.bodies), scene.ignored
-        self._room = scene.box.half - scene.bodies.radii[:, None]
+        self._inner_half = scene.box.half - scene.bodies.radii[:, None]
 
     @property
     def counters(self) -> Mapping[str, float]:
-        return dict(getattr(self._backend, "counters", {}))
+        return require_counters(self._backend.name, getattr(self._backend, "counters", {}))
 
     def begin(self, ways: Floats) -> None:
         """A backend finds close pairs by itself."""
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:
         positions, velocities = motion.positions.copy(), motion.velocities.copy()
-        velocities[self._room <= 0.0] = 0.0  # a body as wide as the box stays in the middle
+        velocities[self._inner_half <= 0.0] = 0.0  # a body as wide as the box stays in the middle
         quaternions, now, parts = motion.quaternions, 0.0, []
         while True:
             waits = self._until_walls(positions, velocities)
@@ -112,11 +112,11 @@ class NativeImpacts:
 
     def _until_walls(self, positions: Floats, velocities: Floats) -> Floats:
         """(n, 3) s: until each body is turned on each axis; inf where it does not move."""
-        ahead = np.where(velocities > 0.0, self._room, -self._room)
+        ahead = np.where(velocities > 0.0, self._inner_half, -self._inner_half)
         with np.errstate(divide="ignore", invalid="ignore"):
             waits = np.maximum((ahead - positions) / velocities, 0.0)
         return np.where(velocities == 0.0, np.inf, waits)
 
     def _fold(self, turned: Flags, positions: Floats, velocities: Floats) -> None:
-        positions[turned] = np.copysign(self._room, velocities)[turned]
+        positions[turned] = np.copysign(self._inner_half, velocities)[turned]
         velocities[turned] *= -1.0

@@ -30,9 +30,10 @@ from harness.motion.hit_states import states_of_events
 from harness.motion.hits import Outcome, Trace
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
+from harness.motion.predictive.codes import Event
 from harness.motion.predictive.initial import check
 from harness.motion.predictive.rules import LASTING, choose_search
-from harness.motion.predictive.simulation import PAIR_EVENT, Simulation
+from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form, needs_its_surface
 from harness.scene.scene import Scene
@@ -276,7 +277,7 @@ def _trace(scene: Scene, plan: Plan, simulation: Simulation, duration: float, co
     masses = scene.bodies.masses
     states: Any = simulation.take_states() if plan.keeps("recording") else None
     events: Any = simulation.take_events()
-    pair = events["kind"] == PAIR_EVENT
+    pair = events["kind"] == Event.PAIR
     bodies = np.column_stack([events["i"], np.where(pair, events["j"], -1)]).astype(np.int64)
     velocities = simulation.velocities
     return Trace(

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
-from harness.backends.contract import read_only, require_pairs
+from harness.backends.contract import made, read_only, require_counters, require_pairs
 from harness.backends.protocol import Backend
 from harness.measure.clocks import Clock
 from harness.methods.observer import Folds, Observer, Onsets, conserved
@@ -119,8 +119,8 @@ class Stepping:
         if not observed:
             return Outcome(clocks, None)
         counted: dict[str, float] = {
-            "frames": law.frames,
             **tests,
+            "frames": law.frames,
             "box_tests": 6 * len(scene.bodies) * law.frames if plan.keeps("walls") else 0,
             "pair_hits": observer.pair_hits,
             "pair_contacts": observer.pair_contacts,
@@ -169,10 +169,8 @@ def _steps(
     if detector is not None:
         detect = detector.pairs
         positions, quaternions = trajectory.positions, trajectory.quaternions
-        # a backend may be anybody's; what is our own needs no such view, for which its kernels would be compiled anew
-        if isinstance(detector, Backend):
-            positions, quaternions = read_only(positions), read_only(quaternions)
 
+        # a backend may be anybody's; what is our own needs no such view, for which its kernels would be compiled anew
         def move_and_detect(frame: _Frame) -> None:
             trajectory.move_to(frame.time)
             frame.pairs = detect(positions, quaternions)
@@ -180,11 +178,16 @@ def _steps(
         steps = [("pair_seconds", move_and_detect)]
         if isinstance(detector, Backend):
             name, count = detector.name, len(scene.bodies)
+            watched = read_only(positions), read_only(quaternions)
+
+            def move_and_ask(frame: _Frame) -> None:
+                trajectory.move_to(frame.time)
+                frame.pairs = cast(Pairs, made(detect(*watched)))
 
             def check(frame: _Frame) -> None:
                 frame.pairs = require_pairs(name, frame.pairs, count)
 
-            steps.append((_UNTIMED, check))
+            steps = [("pair_seconds", move_and_ask), (_UNTIMED, check)]
     if response is None:
         return steps
 
@@ -301,7 +304,10 @@ def _wall_test(scene: Scene, plan: Plan) -> Callable[[Trajectory], Flags]:
 
 def _pair_counters(detector: Detector | None) -> dict[str, float]:
     """`pair_tests`, `narrow_tests` and what else the detector has counted so far, if it counts."""
-    return {"pair_tests": 0, "narrow_tests": 0} if detector is None else dict(getattr(detector, "counters", {}))
+    if detector is None:
+        return {"pair_tests": 0, "narrow_tests": 0}
+    counters = getattr(detector, "counters", {})
+    return require_counters(detector.name, counters) if isinstance(detector, Backend) else dict(counters)
 
 
 def _errors(scene: Scene, observer: Observer, response: CollisionResponse | None, plan: Plan) -> dict[str, float]:

@@ -1,1 +1,1 @@
-"""Time: stepped frames, predicted events, response, and the plan that leaves out what a scene does not need."""
+"""Laws of motion: where bodies are at a time, what answers a hit, what is kept of it; `predictive` has events."""

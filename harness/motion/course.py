@@ -107,31 +107,31 @@ def folded_course(bodies: Bodies, box: Box, duration: float) -> Course:
     box : that folds their paths, as in `harness.motion.kinematics`
     duration : s
     """
-    room = box.half - bodies.radii[:, None]
-    stuck = room <= 0.0  # wider than the box: it stays in the middle
+    inner_half = box.half - bodies.radii[:, None]
+    stuck = inner_half <= 0.0  # wider than the box: it stays in the middle
     positions, velocities = np.where(stuck, 0.0, bodies.positions), np.where(stuck, 0.0, bodies.velocities)
     log, since = CourseLog(positions, velocities), np.zeros(len(bodies))
     folds = sorted(
         (float(time), body, axis)
         for body, axis in np.argwhere(velocities != 0.0).tolist()
-        for time in _fold_times(positions[body, axis], velocities[body, axis], room[body, axis], duration)
+        for time in _fold_times(positions[body, axis], velocities[body, axis], inner_half[body, axis], duration)
     )
     for time, body, axis in folds:
         positions[body] += velocities[body] * (time - since[body])
         since[body] = time
         if time > 0.0:  # at time 0 it turns where it is
-            positions[body, axis] = np.copysign(room[body, axis], velocities[body, axis])
+            positions[body, axis] = np.copysign(inner_half[body, axis], velocities[body, axis])
         velocities[body, axis] *= -1.0
         log.begin(time, np.array([body]), positions[[body]], velocities[[body]])
     return log.course()
 
 
-def _fold_times(x: float, v: float, room: float, duration: float) -> Floats:
+def _fold_times(x: float, v: float, half: float, duration: float) -> Floats:
     """When a path along one axis meets a wall, s."""
-    outward = (x >= room and v > 0.0) or (x <= -room and v < 0.0)
+    outward = (x >= half and v > 0.0) or (x <= -half and v < 0.0)
     # one that starts at or beyond a wall and moves on turns at once, and then flies in
-    way = abs(x) + room if outward else room - x if v > 0.0 else room + x
+    way = abs(x) + half if outward else half - x if v > 0.0 else half + x
     first = float(way / abs(v))
-    count = max(0, int(np.floor((duration - first) * abs(v) / (2.0 * room))) + 1)
-    later: Floats = first + np.arange(count, dtype=np.float64) * float(2.0 * room / abs(v))
+    count = max(0, int(np.floor((duration - first) * abs(v) / (2.0 * half))) + 1)
+    later: Floats = first + np.arange(count, dtype=np.float64) * float(2.0 * half / abs(v))
     return np.append(0.0, later) if outward else later

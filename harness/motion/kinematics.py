@@ -44,17 +44,17 @@ class Trajectory:
         self._start_quaternions = bodies.quaternions.copy()
         self._origins = bodies.positions.copy()
         self._since = np.zeros(len(bodies))
-        self._room = box.half - bodies.radii[:, None]
+        self._inner_half = box.half - bodies.radii[:, None]
         self._folded = folded
         self._turning = turning
         self._folds_at_start = np.zeros((len(bodies), 6), np.int64)
         if folded:
-            _turn_inward(self._origins, self.velocities, self._room, self._folds_at_start)
+            _turn_inward(self._origins, self.velocities, self._inner_half, self._folds_at_start)
 
     def move_to(self, time: float) -> None:
         """Put every body where it is at `time` (s)."""
         if self._folded:
-            _fold(self._origins, self.velocities, self._room, time, self.positions)
+            _fold(self._origins, self.velocities, self._inner_half, time, self.positions)
         else:
             _fly(self._origins, self.velocities, self._since, time, self.positions)
         if self._turning:
@@ -67,7 +67,7 @@ class Trajectory:
     def folds(self, time: float) -> Ints:
         """(n, 6): how often each folded path has met each of the walls x-, x+, … by `time`."""
         counts: Ints = np.zeros((len(self._since), 6), np.int64)
-        _count_folds(self._origins, self.velocities, self._room, time, counts)
+        _count_folds(self._origins, self.velocities, self._inner_half, time, counts)
         counts += self._folds_at_start
         return counts
 
@@ -119,62 +119,62 @@ def turn(start: Floats, spins: Floats, time: float, quaternions: Floats) -> None
 
 
 @kernel
-def _turn_inward(origins: Floats, velocities: Floats, room: Floats, folds: Ints) -> None:
+def _turn_inward(origins: Floats, velocities: Floats, inner_half: Floats, folds: Ints) -> None:
     """A body that starts at or beyond a wall and moves outward meets it at time 0."""
     for i in range(len(origins)):
         for axis in range(3):
             x, v = origins[i, axis], velocities[i, axis]
-            if (x >= room[i, axis] and v > 0.0) or (x <= -room[i, axis] and v < 0.0):
+            if (x >= inner_half[i, axis] and v > 0.0) or (x <= -inner_half[i, axis] and v < 0.0):
                 velocities[i, axis] = -v
                 folds[i, 2 * axis + (1 if v > 0.0 else 0)] += 1
 
 
 @kernel
-def _fold_axis(x: float, v: float, room: float, time: float) -> float:
-    """Triangle wave between -room and room; a body that starts beyond a wall first flies in.
+def _fold_axis(x: float, v: float, half: float, time: float) -> float:
+    """Triangle wave between -half and half; a body that starts beyond a wall first flies in.
 
     >>> [_fold_axis(0.0, 1.0, 4.5, time) for time in (4.5, 9.0, 18.0)]
     [4.5, 0.0, 0.0]
     """
     y = x + v * time
-    if (x > room and y > room and v <= 0.0) or (x < -room and y < -room and v >= 0.0):
+    if (x > half and y > half and v <= 0.0) or (x < -half and y < -half and v >= 0.0):
         return y
-    if -room <= y <= room:
+    if -half <= y <= half:
         return y
-    if room <= 0.0:
+    if half <= 0.0:
         return 0.0
-    period = 4.0 * room
-    phase = float(np.fmod(y + room, period))
+    period = 4.0 * half
+    phase = float(np.fmod(y + half, period))
     if phase < 0.0:
         phase += period
-    return phase - room if phase <= 2.0 * room else 3.0 * room - phase
+    return phase - half if phase <= 2.0 * half else 3.0 * half - phase
 
 
 @kernel
-def _folds_axis(x: float, v: float, room: float, time: float) -> float:
+def _folds_axis(x: float, v: float, half: float, time: float) -> float:
     """How many walls a folded path has met after time 0."""
-    if v == 0.0 or room <= 0.0:
+    if v == 0.0 or half <= 0.0:
         return 0.0
-    to_first = (room - x) / v if v > 0.0 else (-room - x) / v
+    to_first = (half - x) / v if v > 0.0 else (-half - x) / v
     if time < to_first:
         return 0.0
-    return 1.0 + floor((time - to_first) * abs(v) / (2.0 * room))
+    return 1.0 + floor((time - to_first) * abs(v) / (2.0 * half))
 
 
 @kernel
-def _fold(origins: Floats, velocities: Floats, room: Floats, time: float, positions: Floats) -> None:
+def _fold(origins: Floats, velocities: Floats, inner_half: Floats, time: float, positions: Floats) -> None:
     for i in range(len(origins)):
         for axis in range(3):
-            positions[i, axis] = _fold_axis(origins[i, axis], velocities[i, axis], room[i, axis], time)
+            positions[i, axis] = _fold_axis(origins[i, axis], velocities[i, axis], inner_half[i, axis], time)
 
 
 @kernel
-def _count_folds(origins: Floats, velocities: Floats, room: Floats, time: float, counts: Ints) -> None:
+def _count_folds(origins: Floats, velocities: Floats, inner_half: Floats, time: float, counts: Ints) -> None:
     """Paths meet the wall ahead of them first, then the two by turns."""
     for i in range(len(origins)):
         for axis in range(3):
             v = velocities[i, axis]
-            folds = int(_folds_axis(origins[i, axis], v, room[i, axis], time))
+            folds = int(_folds_axis(origins[i, axis], v, inner_half[i, axis], time))
             ahead = 2 * axis + (1 if v > 0.0 else 0)
             behind = 2 * axis + (0 if v > 0.0 else 1)
             counts[i, ahead] = (folds + 1) // 2

@@ -24,8 +24,8 @@ def no_pair_can_meet(scene: Scene, duration: float, within: float = 0.0) -> bool
     """Whether it is certain that no two bounding spheres will touch, or come within a gap.
 
     Until two of them do, every speed stays what it is, so that body i stays within |v_i| `duration` of its start. Where
-    these reachable spheres are disjoint, no pair can meet. Where their volumes exceed the room, they cannot all be
-    disjoint, and no pairs are searched.
+    these reachable spheres are disjoint, no pair can meet. Where their volumes together exceed that of all that they
+    can reach, they cannot all be disjoint, and no pairs are searched.
 
     Parameters
     ----------
@@ -41,8 +41,8 @@ def no_pair_can_meet(scene: Scene, duration: float, within: float = 0.0) -> bool
     reach = (bodies.radii + 0.5 * within + np.linalg.norm(bodies.velocities, axis=1) * duration) * (1.0 + SLACK)
     if not np.isfinite(reach).all() or (bodies.radii >= scene.box.half.min()).any():
         return False  # a path without room in the box is no straight line
-    room = np.prod(2.0 * (scene.box.half + reach.max()))
-    if 4.0 / 3.0 * np.pi * np.sum(reach**3) > room:
+    volume = np.prod(2.0 * (scene.box.half + reach.max()))
+    if 4.0 / 3.0 * np.pi * np.sum(reach**3) > volume:
         return False
     if len(bodies) <= FEW:
         return not _any_close(bodies.positions, reach)

@@ -40,11 +40,13 @@ class RecordedTrajectory(Trajectory):
 
     def velocities_at(self, time: float) -> Floats:
         """(n, 3) m/s at `time`, on the way to the next pose."""
-        return self._poses.motion(self._frame(time))[0]
+        velocities, _ = self._poses.motion(self._frame(time))
+        return velocities
 
     def spins_at(self, time: float) -> Floats:
         """(n, 3) rad/s at `time`, on the way to the next pose."""
-        return self._poses.motion(self._frame(time))[1]
+        _, spins = self._poses.motion(self._frame(time))
+        return spins
 
     def _frame(self, time: float) -> int:
         return max(0, int(np.searchsorted(self._poses.time, time, side="right")) - 1)

@@ -71,13 +71,13 @@ class Gap(NamedTuple):
     Attributes
     ----------
     axis : unit vector from b to a
-    room : m, of the gap
+    width : m
     drift : m/s, at which the centres approach along the axis
     arm_a, arm_b : m, from either centre to the point that is nearest now
     """
 
     axis: Vector
-    room: float
+    width: float
     drift: float
     arm_a: Vector
     arm_b: Vector
@@ -129,12 +129,12 @@ def time_of_impact(
         closing = drift + turning_speed(axis, a) + turning_speed(axis, b)
         if closing <= 0.0:
             return Impact(SearchVerdict.NEVER, np.inf, gap, axis, start, step)
-        room = found.lower - aim
-        wait = room / closing
+        width = found.lower - aim
+        wait = width / closing
         if time + wait <= end:
             arm_a, arm_b = turned(turn_a, found.point_a), minus(turned(turn_a, found.point_b), offset)
             one, other = TurnedHull(hull_a, a, turn_a), TurnedHull(hull_b, b, turn_b)
-            longer = open_for(one, other, Gap(axis, room, drift, arm_a, arm_b))
+            longer = open_for(one, other, Gap(axis, width, drift, arm_a, arm_b))
             wait = longer if longer > wait else wait
         time += wait
         if step % STEPS_PER_SWEEP == 0:
@@ -152,21 +152,21 @@ def open_for(one: TurnedHull, other: TurnedHull, gap: Gap) -> float:
     So after t no point of a hull is farther along than its support function in the direction n + t (n x w) says, and
     t^2 / 2 times this bound. As a function of t the gap left is concave: open now and later, it is open between.
     """
-    a, b, axis, room, drift = one.body, other.body, gap.axis, gap.room, gap.drift
+    a, b, axis, width, drift = one.body, other.body, gap.axis, gap.width, gap.drift
     across_a, across_b = cross(axis, a.spin), cross(axis, b.spin)
     bend = sqrt(dot(across_a, across_a) * dot(a.spin, a.spin)) * a.reach
     bend += sqrt(dot(across_b, across_b) * dot(b.spin, b.spin)) * b.reach
     rate = dot(across_a, gap.arm_a) - dot(across_b, gap.arm_b) - drift
     if bend == 0.0:
         return 0.0  # the first bound is as good
-    root = sqrt(rate * rate + 2.0 * bend * room)
-    time = (rate + root) / bend if rate > 0.0 else 2.0 * room / (root - rate)
+    root = sqrt(rate * rate + 2.0 * bend * width)
+    time = (rate + root) / bend if rate > 0.0 else 2.0 * width / (root - rate)
     at_begin = reach_towards(one, other, axis, axis)
-    safe, left_safe, beyond, left_beyond = 0.0, room, time, 0.0
+    safe, left_safe, beyond, left_beyond = 0.0, width, time, 0.0
     for trial in range(MOST_TRIALS):
         forward_a, forward_b = plus(axis, scaled(across_a, time)), plus(axis, scaled(across_b, time))
         used = reach_towards(one, other, forward_a, forward_b) - at_begin
-        left = room - used - time * (drift + 0.5 * bend * time)
+        left = width - used - time * (drift + 0.5 * bend * time)
         if left >= 0.0:
             safe, left_safe = time, left
             if trial == 0:

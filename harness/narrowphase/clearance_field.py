@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from harness.arrays import Floats
 from harness.kernel import kernel
 from harness.narrowphase.containment import winding
-from harness.narrowphase.triangle_tree import TriangleTree, triangle_tree
+from harness.narrowphase.triangle_tree import TriangleTree, centre_of, radius_of, triangle_tree
 from harness.narrowphase.vectors import Vector, cross, dot, minus
 from harness.scene.mesh import Mesh, Triangles
 
@@ -129,9 +129,8 @@ def distance_from(tree: TriangleTree, point: Vector, limit: float) -> float:
 @kernel
 def clear_of_disc(tree: TriangleTree, node: int, point: Vector) -> float:
     """How far a point is from the sphere around a node, at least."""
-    d = tree.discs
-    x, y, z = point[0] - d[node, 0], point[1] - d[node, 1], point[2] - d[node, 2]
-    return float(sqrt(x * x + y * y + z * z) - d[node, 3])
+    x, y, z = minus(point, centre_of(tree, node))
+    return float(sqrt(x * x + y * y + z * z) - radius_of(tree, node))
 
 
 @kernel

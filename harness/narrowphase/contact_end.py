@@ -80,12 +80,12 @@ class Hold(NamedTuple):
     ----------
     lasts : s, for which they certainly stay in each other; 0 where that is not proved
     near : s, for which they certainly stay near enough to each other; 0 where that is not proved
-    room : m, by which the gap may still widen; below 0 where it is too wide already
+    slack : m, by which the gap may still widen; below 0 where it is too wide already
     """
 
     lasts: float
     near: float
-    room: float
+    slack: float
 
 
 class LastCrossing(NamedTuple):
@@ -124,7 +124,8 @@ def end_of_hull_contact(
         Until its time the gap was never wider than 5/4 of the tolerance; if the contact ends, it is wider than 9/8
         then.
     """
-    return end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)[0]
+    found, _ = end_of_contact(hull_a, hull_b, a, b, begin, end, tolerance, hold_of_hulls, COLD_START)
+    return found
 
 
 @kernel
@@ -137,7 +138,8 @@ def end_of_mesh_contact(
     touch it.
     """
     last = LastCrossing(ROOTS, 0.0, 0, np.empty((DEPTH, 2), np.int64))
-    return followed_mesh_contact(shape_a, shape_b, a, b, begin, end, tolerance, last)[0]
+    found, _ = followed_mesh_contact(shape_a, shape_b, a, b, begin, end, tolerance, last)
+    return found
 
 
 @kernel
@@ -173,9 +175,9 @@ def end_of_contact(
     speed, rest, now, creeping = fastest_passing(a, b), end - begin, 0.0, 0
     for step in range(1, MOST_STEPS + 1):
         hold, memory = hold_of(shape_a, shape_b, relative_motion(a, b, now), near, memory)
-        if hold.room < 0.0:
+        if hold.slack < 0.0:
             return ContactEnd(SearchVerdict.FOUND, begin + now, step, begin + now), memory
-        wait = max(max(hold.lasts, hold.near), max(hold.room, RESOLUTION / ENDING_GAP * near) / speed)
+        wait = max(max(hold.lasts, hold.near), max(hold.slack, RESOLUTION / ENDING_GAP * near) / speed)
         if now + wait >= rest:
             return ContactEnd(SearchVerdict.NEVER, end, step, max(end, begin + (now + hold.lasts))), memory
         creeping = 0 if hold.lasts > 0.0 else creeping + 1

@@ -100,7 +100,7 @@ def contacts(
         if onset.verdict != SearchVerdict.FOUND:
             return Contacts(intervals[:count].copy(), onset.verdict == SearchVerdict.STALLED)
         ending = end_of_contact(shape_a, shape_b, a, b, onset.time, end, tolerance)
-        intervals = with_room(intervals, count)
+        intervals = with_capacity(intervals, count)
         intervals[count, 0], intervals[count, 1] = onset.time, ending.time
         count += 1
         if ending.verdict == SearchVerdict.STALLED or not ending.time > time:
@@ -135,7 +135,7 @@ def next_mesh_contact(
 
 
 @kernel
-def with_room(intervals: Floats, count: int) -> Floats:
+def with_capacity(intervals: Floats, count: int) -> Floats:
     """The same, longer if full."""
     if count < len(intervals):
         return intervals

@@ -20,7 +20,7 @@ class FrameFlights(NamedTuple):
     quaternions : (n, 4) float array, unit, w x y z, at its start
     velocities : (n, 3) float array, m/s, at its start
     spins : (n, 3) float array, rad/s, in the world
-    room : (n, 3) float array, m, how far from the middle of the box each centre can come; inf without a box
+    inner_half : (n, 3) float array, m, how far from the middle of the box each centre can come; inf without a box
     sizes : (n,) float array, m
     reach : of size, the farthest that a point of a body is from its centre
     duration : s
@@ -31,7 +31,7 @@ class FrameFlights(NamedTuple):
     quaternions: Floats
     velocities: Floats
     spins: Floats
-    room: Floats
+    inner_half: Floats
     sizes: Floats
     reach: float
     duration: float
@@ -56,7 +56,7 @@ def flight_of_pair(flights: FrameFlights, i: int, j: int, pair: PairFlight) -> N
     for side in range(2):
         body = i if side == 0 else j
         for axis in range(3):
-            free = flights.room[body, axis] > 0.0
+            free = flights.inner_half[body, axis] > 0.0
             pair.positions[side, axis] = flights.positions[body, axis] if free else 0.0
             pair.velocities[side, axis] = flights.velocities[body, axis] if free else 0.0
 
@@ -70,7 +70,7 @@ def until_fold(flights: FrameFlights, i: int, j: int, pair: PairFlight) -> float
         for axis in range(3):
             v = pair.velocities[side, axis]
             if v != 0.0:
-                ahead = flights.room[body, axis] if v > 0.0 else -flights.room[body, axis]
+                ahead = flights.inner_half[body, axis] if v > 0.0 else -flights.inner_half[body, axis]
                 wait = min(wait, max((ahead - pair.positions[side, axis]) / v, 0.0))
     return wait
 
@@ -82,7 +82,7 @@ def fold(flights: FrameFlights, i: int, j: int, pair: PairFlight, wait: float) -
         body = i if side == 0 else j
         for axis in range(3):
             v = pair.velocities[side, axis]
-            ahead = flights.room[body, axis] if v > 0.0 else -flights.room[body, axis]
+            ahead = flights.inner_half[body, axis] if v > 0.0 else -flights.inner_half[body, axis]
             if v != 0.0 and max((ahead - pair.positions[side, axis]) / v, 0.0) <= wait:
                 pair.positions[side, axis] = ahead
                 pair.velocities[side, axis] = -v

@@ -16,7 +16,7 @@ from harness.narrowphase.gjk import Relative, WarmStart, difference, hull_distan
 from harness.narrowphase.mesh_advancement import MeshShape, MeshWarmStart, mesh_shape
 from harness.narrowphase.simplex import Simplex
 from harness.narrowphase.support import SupportMap
-from harness.narrowphase.surface_gap import Blocks, SearchRoom, surface_gap
+from harness.narrowphase.surface_gap import Blocks, SearchScratch, surface_gap
 from harness.narrowphase.tree_pairs import Trees
 from harness.narrowphase.triangle_blocks import TriangleBlocks, block_triangle_a, block_triangle_b, triangle_blocks
 from harness.narrowphase.triangle_distance import walk
@@ -148,7 +148,7 @@ def mesh_gap(
     pose: Relative,
     start: MeshWarmStart,
     accuracy: Accuracy,
-    room: SearchRoom,
+    scratch: SearchScratch,
 ) -> tuple[Gap, MeshWarmStart]:
     """The gap of two surfaces.
 
@@ -158,7 +158,7 @@ def mesh_gap(
     pose : Relative
     start : MeshWarmStart of an earlier search for this pair, or MESH_COLD_START
     accuracy : Accuracy
-    room : written
+    scratch : written
 
     Returns
     -------
@@ -176,7 +176,7 @@ def mesh_gap(
         axis = (1.0, 0.0, 0.0)
     trees, blocks = Trees(shape_a.mesh.tree, shape_b.mesh.tree), Blocks(shape_a.blocks, shape_b.blocks)
     enough = max(touching, accuracy.enough)
-    found = surface_gap(trees, blocks, pose, start.leaves, axis, accuracy.limit, enough, accuracy.tolerance, room)
+    found = surface_gap(trees, blocks, pose, start.leaves, axis, accuracy.limit, enough, accuracy.tolerance, scratch)
     if found.leaves.a < 0:
         return BEYOND, MeshWarmStart(hulls.warm_start, start.leaves)
     i, j = blocks.a.first[found.leaves.a], blocks.b.first[found.leaves.b]

@@ -21,7 +21,7 @@ from harness.narrowphase.mesh_advancement import MeshWarmStart
 from harness.narrowphase.placement import Placement, pose_of, rotation_of
 from harness.narrowphase.pose_gaps import Gaps
 from harness.narrowphase.support import support_map
-from harness.narrowphase.surface_gap import SearchRoom, search_room
+from harness.narrowphase.surface_gap import SearchScratch, search_scratch
 from harness.narrowphase.tree_pairs import NO_NODES, NodePair
 from harness.narrowphase.vectors import scaled, turned
 from harness.scene.hull import Hull
@@ -82,19 +82,19 @@ class MeshGapPairs:
 
     def __init__(self, meshes: Sequence[Mesh], mesh_of: Ints) -> None:
         self._shapes = gap_shapes_of_bodies([mesh_gap_shape(mesh) for mesh in meshes], mesh_of)
-        self._last, self._room = gap_memory(0), search_room()
+        self._last, self._scratch = gap_memory(0), search_scratch()
 
     def gaps(self, pairs: Pairs, placement: Placement, accuracy: Accuracy) -> Gaps:
         """The gaps of the pairs of a frame; parameters and answer as for `HullGapPairs.gaps`."""
         now, found = gap_memory(len(pairs)), gaps_of(len(pairs))
-        mesh_pair_gaps(pairs, placement, accuracy, self._shapes, self._room, self._last, now, found)
+        mesh_pair_gaps(pairs, placement, accuracy, self._shapes, self._scratch, self._last, now, found)
         self._last = now
         return found
 
 
-def gap_memory(room: int) -> GapMemory:
+def gap_memory(capacity: int) -> GapMemory:
     """Unwritten."""
-    return GapMemory(np.empty(room, np.int64), np.empty((room, 4), np.int64), np.empty((room, 2), np.int64))
+    return GapMemory(np.empty(capacity, np.int64), np.empty((capacity, 4), np.int64), np.empty((capacity, 2), np.int64))
 
 
 def gaps_of(count: int) -> Gaps:
@@ -130,7 +130,7 @@ def mesh_pair_gaps(
     placement: Placement,
     accuracy: Accuracy,
     shapes: GapShapes,
-    room: SearchRoom,
+    scratch: SearchScratch,
     last: GapMemory,
     now: GapMemory,
     found: Gaps,
@@ -145,7 +145,7 @@ def mesh_pair_gaps(
             leaves = NodePair(last.leaves[place, 0], last.leaves[place, 1])
         start = MeshWarmStart(simplex_of(last, place, i << 32 | j), leaves)
         one, other = gap_shape_of(shapes, i), gap_shape_of(shapes, j)
-        gap, start = mesh_gap(one, other, pose_of(placement, i, j), start, accuracy, room)
+        gap, start = mesh_gap(one, other, pose_of(placement, i, j), start, accuracy, scratch)
         remember(now, k, i << 32 | j, start.hulls, start.leaves)
         write_gap(found, k, gap, placement, i)
 

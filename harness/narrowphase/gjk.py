@@ -17,13 +17,13 @@ from harness.narrowphase.simplex import (
     ALL_CORNERS,
     Nearest,
     Simplex,
+    depth_of_origin,
     extended,
     kept,
     nearest_on,
     nearest_on_segment,
     nearest_on_tetrahedron,
     nearest_on_triangle,
-    room_around_origin,
     weights,
 )
 from harness.narrowphase.support import SupportMap, support
@@ -136,7 +136,7 @@ def hull_distance(
     if s3 >= 0:
         p3 = difference(hull_a, hull_b, pose, s3)
         simplex = Simplex(p0, p1, p2, p3, (s0, s1, s2, s3), 4)
-        if room_around_origin(p0, p1, p2, p3) > margin:
+        if depth_of_origin(p0, p1, p2, p3) > margin:
             return Distance(PairVerdict.TOUCHING, 0.0, 0.0, nearest.point, p0, p0, simplex.vertices)
         other = nearest_on_tetrahedron(p0, p1, p2, p3)
         if other.corners != ALL_CORNERS and other.squared < nearest.squared:
@@ -160,7 +160,7 @@ def hull_distance(
         larger = extended(simplex, point, vertex)
         step = nearest_on(larger)
         if step.corners == ALL_CORNERS:
-            inside = room_around_origin(larger.a, larger.b, larger.c, larger.d) > margin
+            inside = depth_of_origin(larger.a, larger.b, larger.c, larger.d) > margin
             verdict = PairVerdict.TOUCHING if inside else PairVerdict.UNDECIDED
             return Distance(verdict, 0.0, 0.0, nearest.point, larger.a, larger.a, larger.vertices)
         if not step.squared < squared:  # rounding ends the descent

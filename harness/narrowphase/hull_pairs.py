@@ -90,8 +90,8 @@ class HullPairs:
         """
         count = len(pairs)
         if count > len(self._verdicts):
-            room = count + count // 2
-            self._verdicts, self._now = np.empty(room, np.int8), memory(room)
+            capacity = count + count // 2
+            self._verdicts, self._now = np.empty(capacity, np.int8), memory(capacity)
         elif len(self._now.keys) < count:
             self._now = memory(len(self._verdicts))
         parts = self._threads.parts(count, FEWEST_SHARED)
@@ -115,9 +115,9 @@ class HullPairs:
         return settle(pairs, placement, self._margin, self._hulls, last, left, now, self._verdicts[begin:])
 
 
-def memory(room: int) -> Memory:
+def memory(capacity: int) -> Memory:
     """Unwritten."""
-    return Memory(np.empty(room, np.int64), np.empty((room, 3)), np.empty((room, 4), np.int64))
+    return Memory(np.empty(capacity, np.int64), np.empty((capacity, 3)), np.empty((capacity, 4), np.int64))
 
 
 @kernel

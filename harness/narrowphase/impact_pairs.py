@@ -338,6 +338,6 @@ def noted(found: Onsets, count: int, k: int, time: float) -> int:
     return count + 1
 
 
-def onsets_of(pairs: int, room: int) -> Onsets:
+def onsets_of(pairs: int, capacity: int) -> Onsets:
     """Unwritten, for so many pairs and onsets."""
-    return Onsets(np.empty(room, np.int64), np.empty(room), np.empty(pairs, PAIR_STATE))
+    return Onsets(np.empty(capacity, np.int64), np.empty(capacity), np.empty(pairs, PAIR_STATE))

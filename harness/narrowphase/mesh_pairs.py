@@ -37,8 +37,8 @@ class Crossings(NamedTuple):
 
     Attributes
     ----------
-    keys : (room,) int array, i << 32 | j, ascending
-    leaves : (room, 2) int array, of triangles that cross
+    keys : (capacity,) int array, i << 32 | j, ascending
+    leaves : (capacity, 2) int array, of triangles that cross
     """
 
     keys: Ints
@@ -110,9 +110,9 @@ class MeshPairs:
         return count
 
 
-def crossings(room: int) -> Crossings:
+def crossings(capacity: int) -> Crossings:
     """Unwritten."""
-    return Crossings(np.empty(room, np.int64), np.empty((room, 2), np.int64))
+    return Crossings(np.empty(capacity, np.int64), np.empty((capacity, 2), np.int64))
 
 
 @kernel

@@ -16,7 +16,7 @@ import numpy as np
 from harness.kernel import kernel, strict_step
 from harness.narrowphase.free_flight import Motion, orientation
 from harness.narrowphase.tree_pairs import Proximity
-from harness.narrowphase.triangle_tree import TriangleTree
+from harness.narrowphase.triangle_tree import TriangleTree, centre_of, normal_of, radius_of, thickness_of
 from harness.narrowphase.vectors import Matrix, Triangle, Vector, cross, dot, minus, plus, scaled, turned
 
 
@@ -102,11 +102,13 @@ def moving_disc_b(tree: TriangleTree, at: Instant, node: int) -> MovingDisc:
 @strict_step
 def moving_disc(tree: TriangleTree, node: int, turn: Matrix, body: Motion) -> MovingDisc:
     """The disc of a node of a body that is turned so."""
-    d, size = tree.discs, body.size
-    arm = scaled(turned(turn, (d[node, 0], d[node, 1], d[node, 2])), size)
+    size = body.size
+    arm = scaled(turned(turn, centre_of(tree, node)), size)
     velocity = cross(body.spin, arm)
-    normal = turned(turn, (d[node, 4], d[node, 5], d[node, 6]))
-    return MovingDisc(arm, velocity, sqrt(dot(velocity, velocity)), size * d[node, 3], normal, size * d[node, 7])
+    radius, thickness = size * radius_of(tree, node), size * thickness_of(tree, node)
+    return MovingDisc(
+        arm, velocity, sqrt(dot(velocity, velocity)), radius, turned(turn, normal_of(tree, node)), thickness
+    )
 
 
 @strict_step

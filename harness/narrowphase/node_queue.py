@@ -16,8 +16,8 @@ class NodeQueue(NamedTuple):
 
     Attributes
     ----------
-    times : (room,) float array, s
-    nodes : (room,) int array, node a << 32 | node b
+    times : (capacity,) float array, s
+    nodes : (capacity,) int array, node a << 32 | node b
     """
 
     times: Floats

@@ -14,7 +14,7 @@ import numpy as np
 from harness.kernel import kernel
 from harness.narrowphase.free_flight import RelativeMotion
 from harness.narrowphase.gjk import WarmStart, difference, farthest, vertex_a, vertex_b
-from harness.narrowphase.simplex import room_around_origin
+from harness.narrowphase.simplex import depth_of_origin
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.vectors import Vector, cross, dot, minus, scaled
 
@@ -49,17 +49,17 @@ def overlap_lasts(hull_a: SupportMap, hull_b: SupportMap, seen: RelativeMotion, 
     s0, s1, s2, s3 = corners
     p0, p1 = difference(hull_a, hull_b, pose, s0), difference(hull_a, hull_b, pose, s1)
     p2, p3 = difference(hull_a, hull_b, pose, s2), difference(hull_a, hull_b, pose, s3)
-    room = room_around_origin(p0, p1, p2, p3)
+    radius = depth_of_origin(p0, p1, p2, p3)
     for _ in range(ROUNDS):
         outward = outward_of_nearest(p0, p1, p2, p3)
         vertices = farthest(hull_a, hull_b, pose, outward)
         point = difference(hull_a, hull_b, pose, vertices)
-        at0, at1 = room_around_origin(point, p1, p2, p3), room_around_origin(p0, point, p2, p3)
-        at2, at3 = room_around_origin(p0, p1, point, p3), room_around_origin(p0, p1, p2, point)
+        at0, at1 = depth_of_origin(point, p1, p2, p3), depth_of_origin(p0, point, p2, p3)
+        at2, at3 = depth_of_origin(p0, p1, point, p3), depth_of_origin(p0, p1, p2, point)
         best = max(max(at0, at1), max(at2, at3))
-        if not best > room:
+        if not best > radius:
             break
-        room = best
+        radius = best
         if best == at0:
             p0, s0 = point, vertices
         elif best == at1:
@@ -78,7 +78,7 @@ def overlap_lasts(hull_a: SupportMap, hull_b: SupportMap, seen: RelativeMotion, 
         speed = sqrt(dot(velocity, velocity))
         bend = rate_a * sqrt(dot(round_a, round_a)) + rate_b * sqrt(dot(round_b, round_b))
         if speed > 0.0 or bend > 0.0:
-            time = min(time, 2.0 * room / (speed + sqrt(speed * speed + 2.0 * bend * room)))
+            time = min(time, 2.0 * radius / (speed + sqrt(speed * speed + 2.0 * bend * radius)))
     return Overlap(max(0.0, time), (s0, s1, s2, s3))
 
 

@@ -11,7 +11,7 @@ from harness.arrays import Ints
 from harness.kernel import kernel, strict_step
 from harness.narrowphase.gjk import Relative
 from harness.narrowphase.tree_pairs import NodePair, Proximity, Trees, halves, push_near
-from harness.narrowphase.triangle_tree import TriangleTree
+from harness.narrowphase.triangle_tree import TriangleTree, centre_of, normal_of, radius_of, thickness_of
 from harness.narrowphase.vectors import Triangle, Vector, dot, minus, plus, scaled, turned
 
 
@@ -60,17 +60,18 @@ def proximity(one: Disc, two: Disc, pose: Relative, margin: float) -> Proximity:
 
 @strict_step
 def disc_a(tree: TriangleTree, pose: Relative, node: int) -> Disc:
-    d, size = tree.discs, pose.size_a
-    centre, normal = (d[node, 0], d[node, 1], d[node, 2]), (d[node, 4], d[node, 5], d[node, 6])
-    return Disc(scaled(centre, size), size * d[node, 3], normal, size * d[node, 7])
+    size, centre = pose.size_a, centre_of(tree, node)
+    return Disc(
+        scaled(centre, size), size * radius_of(tree, node), normal_of(tree, node), size * thickness_of(tree, node)
+    )
 
 
 @strict_step
 def disc_b(tree: TriangleTree, pose: Relative, node: int) -> Disc:
-    d, size = tree.discs, pose.size_b
-    centre, normal = (d[node, 0], d[node, 1], d[node, 2]), (d[node, 4], d[node, 5], d[node, 6])
-    from_b = scaled(turned(pose.rotation, centre), size)
-    return Disc(plus(pose.offset, from_b), size * d[node, 3], turned(pose.rotation, normal), size * d[node, 7])
+    size = pose.size_b
+    from_b = scaled(turned(pose.rotation, centre_of(tree, node)), size)
+    normal = turned(pose.rotation, normal_of(tree, node))
+    return Disc(plus(pose.offset, from_b), size * radius_of(tree, node), normal, size * thickness_of(tree, node))
 
 
 @strict_step

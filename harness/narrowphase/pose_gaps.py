@@ -10,7 +10,7 @@ from harness.narrowphase.gap import Accuracy, Gap, MeshGapShape, hull_gap, mesh_
 from harness.narrowphase.gjk import COLD_START, Relative, relative_pose
 from harness.narrowphase.mesh_advancement import MESH_COLD_START
 from harness.narrowphase.support import SupportMap
-from harness.narrowphase.surface_gap import search_room
+from harness.narrowphase.surface_gap import search_scratch
 from harness.narrowphase.vectors import Matrix, Vector, minus, plus, rotation, scaled, turned
 
 
@@ -65,9 +65,9 @@ def mesh_gaps(
     shape_a: MeshGapShape, shape_b: MeshGapShape, a: Poses, b: Poses, accuracy: Accuracy, found: Gaps
 ) -> None:
     """The gaps of two surfaces."""
-    room = search_room()
+    scratch = search_scratch()
     for k in range(len(a.positions)):
-        gap, _ = mesh_gap(shape_a, shape_b, pose_at(a, b, k), MESH_COLD_START, accuracy, room)
+        gap, _ = mesh_gap(shape_a, shape_b, pose_at(a, b, k), MESH_COLD_START, accuracy, scratch)
         write(found, k, gap, turn(a, k), position(a, k))
 
 

@@ -169,14 +169,14 @@ def nearest_on_tetrahedron(a: Vector, b: Vector, c: Vector, d: Vector) -> Neares
 
 
 @kernel
-def room_around_origin(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
+def depth_of_origin(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
     """How far the origin is inside a tetrahedron: distance to the nearest face plane, below 0 if outside."""
     volume = dot(cross(minus(a, d), minus(b, d)), minus(c, d))
     sign = 1.0 if volume > 0.0 else -1.0
-    room = depth_below(a, b, d, sign)
-    room = min(room, depth_below(b, c, d, sign))
-    room = min(room, depth_below(c, a, d, sign))
-    return min(room, depth_below(a, c, b, sign))
+    depth = depth_below(a, b, d, sign)
+    depth = min(depth, depth_below(b, c, d, sign))
+    depth = min(depth, depth_below(c, a, d, sign))
+    return min(depth, depth_below(a, c, b, sign))
 
 
 @kernel

@@ -22,7 +22,7 @@ from harness.narrowphase.free_flight import fastest_passing
 from harness.narrowphase.motion_bounds import Instant, moving_disc_a, moving_disc_b, until_discs_touch
 from harness.narrowphase.support import SupportMap, support
 from harness.narrowphase.tree_pairs import DEPTH, Trees
-from harness.narrowphase.triangle_tree import TriangleTree
+from harness.narrowphase.triangle_tree import TriangleTree, centre_of, normal_of, radius_of, thickness_of
 from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus, scaled, turned_back
 
 # Triangles of a cap, at most; of more, the window is halved, so often.
@@ -205,7 +205,7 @@ def lowest_of(hull: SupportMap, rise: Rise) -> float:
 @kernel
 def below(tree: TriangleTree, rise: Rise, height: float, cap: Cap) -> int:
     """The triangles that come below a height (m), written; how many there are, -1 if there is no room for them."""
-    d, c, stack = tree.discs, tree.corners, cap.stack
+    c, stack = tree.corners, cap.stack
     x, y, z = rise.begin
     u, v, w = rise.end
     length_begin, length_end = dot(rise.begin, rise.begin), dot(rise.end, rise.end)
@@ -228,8 +228,9 @@ def below(tree: TriangleTree, rise: Rise, height: float, cap: Cap) -> int:
                 cap.leaves[count], cap.lowest[count] = node, low - rise.bend
                 count += 1
             continue
-        p, q, r, radius = d[node, 0], d[node, 1], d[node, 2], d[node, 3]
-        i, j, k, thick = d[node, 4], d[node, 5], d[node, 6], d[node, 7]
+        p, q, r = centre_of(tree, node)
+        i, j, k = normal_of(tree, node)
+        radius, thick = radius_of(tree, node), thickness_of(tree, node)
         along = x * i + y * j + z * k
         # a little more than rounding takes from the part across
         wide = radius * (sqrt(max(0.0, length_begin - along * along)) + 1e-7 * sqrt(length_begin))

@@ -83,9 +83,9 @@ def refine(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The lists of side x side cells, given those of a quarter as many."""
     corners = np.empty((4, 3))
-    room = 4 * len(candidates)
+    capacity = 4 * len(candidates)
     new_start = np.zeros(side * side + 1, np.int32)
-    kept = np.empty(room, np.int32)
+    kept = np.empty(capacity, np.int32)
     count = 0
     for cell in range(side * side):
         u, v = cell // side, cell % side

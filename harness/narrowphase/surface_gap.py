@@ -22,6 +22,7 @@ from harness.narrowphase.placed_parts import Disc, disc_a, disc_b
 from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees
 from harness.narrowphase.triangle_blocks import BLOCK, TriangleBlocks, block_triangle_a, block_triangle_b
 from harness.narrowphase.triangle_distance import walk
+from harness.narrowphase.triangle_tree import radius_of
 from harness.narrowphase.vectors import Vector, dot, minus, scaled, turned_back
 
 # How many times as wide as the other a node may be, to be left whole though it has few triangles: of a floor or a wall
@@ -38,7 +39,7 @@ class Blocks(NamedTuple):
     b: TriangleBlocks
 
 
-class SearchRoom(NamedTuple):
+class SearchScratch(NamedTuple):
     """What a search writes to.
 
     Attributes
@@ -52,6 +53,19 @@ class SearchRoom(NamedTuple):
     nodes: Ints
     bounds: Floats
     parts: Floats
+
+
+class Nearness(NamedTuple):
+    """How near two discs can come.
+
+    Attributes
+    ----------
+    bound : the square of what they cannot come below
+    centres : the square of how far their centres are apart, of their reaches
+    """
+
+    bound: float
+    centres: float
 
 
 class SurfaceGap(NamedTuple):
@@ -71,9 +85,9 @@ class SurfaceGap(NamedTuple):
 
 
 @kernel
-def search_room() -> SearchRoom:
+def search_scratch() -> SearchScratch:
     """Unwritten."""
-    return SearchRoom(np.empty((DEPTH, 2), np.int64), np.empty(DEPTH), np.empty((4, BLOCK)))
+    return SearchScratch(np.empty((DEPTH, 2), np.int64), np.empty(DEPTH), np.empty((4, BLOCK)))
 
 
 @kernel
@@ -86,7 +100,7 @@ def surface_gap(
     limit: float,
     enough: float,
     tolerance: float,
-    room: SearchRoom,
+    scratch: SearchScratch,
 ) -> SurfaceGap:
     """The distance of two surfaces, and between which triangles.
 
@@ -99,7 +113,7 @@ def surface_gap(
     limit : beyond which the distance does not matter
     enough : a distance that need not be known better, such as one that cannot be told from 0
     tolerance : how much smaller than `gap` the distance may be
-    room : written
+    scratch : written
 
     Returns
     -------
@@ -111,18 +125,18 @@ def surface_gap(
     if start.a >= 0:
         first, other = blocks.a.first[start.a], blocks.b.first[start.b]
         best, limit = nearer_triangles(blocks, pose, first, other, enough, tolerance, best, limit)
-    room.nodes[0, 0], room.nodes[0, 1], room.bounds[0] = 0, 0, 0.0
+    scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = 0, 0, 0.0
     height = 1
     while height > 0 and best.gap > enough:
         height -= 1
-        if room.bounds[height] >= limit * limit:
+        if scratch.bounds[height] >= limit * limit:
             continue
-        nodes = NodePair(room.nodes[height, 0], room.nodes[height, 1])
+        nodes = NodePair(scratch.nodes[height, 0], scratch.nodes[height, 1])
         halve_a, halve_b = to_be_halved(trees, blocks, pose, nodes)
         if not (halve_a or halve_b):
-            best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, room.parts)
+            best, limit = nearest_of_blocks(blocks, pose, nodes, enough, tolerance, best, limit, scratch.parts)
         else:
-            height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, room, height)
+            height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, scratch, height)
     return best
 
 
@@ -130,8 +144,8 @@ def surface_gap(
 def to_be_halved(trees: Trees, blocks: Blocks, pose: Relative, nodes: NodePair) -> tuple[bool, bool]:
     """Whether there are too many triangles below either node, or these are too wide, to put all to all of the other."""
     count_a, count_b = blocks.a.counts[nodes.a], blocks.b.counts[nodes.b]
-    radius_a = trees.a.discs[nodes.a, 3] * pose.size_a
-    radius_b = trees.b.discs[nodes.b, 3] * pose.size_b
+    radius_a = radius_of(trees.a, nodes.a) * pose.size_a
+    radius_b = radius_of(trees.b, nodes.b) * pose.size_b
     wide_a, wide_b = count_a > 1 and radius_a > WIDE * radius_b, count_b > 1 and radius_b > WIDE * radius_a
     return count_a > BLOCK or wide_a, count_b > BLOCK or wide_b
 
@@ -144,13 +158,13 @@ def push_halves(
     nodes: NodePair,
     axis: Vector,
     squared_limit: float,
-    room: SearchRoom,
+    scratch: SearchScratch,
     height: int,
 ) -> int:
     """Replace a pair of nodes by those of its halves that may come below a limit; returns the stack's new height."""
     a, b = nodes
     halve_a, halve_b = to_be_halved(trees, blocks, pose, nodes)
-    larger_a = trees.a.discs[a, 3] * pose.size_a >= trees.b.discs[b, 3] * pose.size_b
+    larger_a = radius_of(trees.a, a) * pose.size_a >= radius_of(trees.b, b) * pose.size_b
     if not halve_b or (halve_a and larger_a):
         left, right = NodePair(a + 1, b), NodePair(trees.a.right[a], b)
         whole = disc_b(trees.b, pose, b)
@@ -161,23 +175,20 @@ def push_halves(
         whole = disc_a(trees.a, pose, a)
         of_left = nearness(whole, disc_b(trees.b, pose, left.b), axis, squared_limit)
         of_right = nearness(whole, disc_b(trees.b, pose, right.b), axis, squared_limit)
-    if of_left[0] > of_right[0] or (of_left[0] == of_right[0] and of_left[1] > of_right[1]):
+    if of_left.bound > of_right.bound or (of_left.bound == of_right.bound and of_left.centres > of_right.centres):
         left, of_left, right, of_right = right, of_right, left, of_left
-    if of_right[0] < squared_limit:
-        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = right.a, right.b, of_right[0]
+    if of_right.bound < squared_limit:
+        scratch.nodes[height, 0], scratch.nodes[height, 1], scratch.bounds[height] = right.a, right.b, of_right.bound
         height += 1
-    if of_left[0] < squared_limit:
-        room.nodes[height, 0], room.nodes[height, 1], room.bounds[height] = left.a, left.b, of_left[0]
+    if of_left.bound < squared_limit:
+        scratch.nodes[height, 0], scratch.nodes[height, 1], scratch.bounds[height] = left.a, left.b, of_left.bound
         height += 1
     return height
 
 
 @kernel
-def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> tuple[float, float]:
-    """The square of a bound below which two discs cannot come, and how near they are to each other's centres.
-
-    The bound is as great as can be only where it is below the limit.
-    """
+def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> Nearness:
+    """How near two discs can come. The bound is as great as can be only where it is below the limit."""
     between = minus(two.centre, one.centre)
     squared = dot(between, between)
     reach = one.radius + two.radius
@@ -193,7 +204,7 @@ def nearness(one: Disc, two: Disc, axis: Vector, squared_limit: float) -> tuple[
         bound = max(bound, split(along, squared, one.thickness + extent_along(two, cosine), reach))
         along = dot(two.normal, between)
         bound = max(bound, split(along, squared, two.thickness + extent_along(one, cosine), reach))
-    return bound, near
+    return Nearness(bound, near)
 
 
 @strict_step

@@ -1,7 +1,9 @@
-"""Parts of two surfaces, a node of either tree of triangles, and the step of every search through both trees.
+"""Parts of two surfaces, a node of either tree of triangles, and the step of searches through both trees.
 
 A search begins with a pair of nodes, and replaces it by the two pairs in which the larger node gives way to its halves,
 the deeper one first, until pairs of triangles are left. What is asked of the parts, and when, is up to the search.
+That for the least distance (`surface_gap`) takes a step of its own: it leaves blocks of triangles whole, and orders by
+bounds.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ from typing import NamedTuple, Protocol, TypeVar
 
 from harness.arrays import Ints
 from harness.kernel import strict_step
-from harness.narrowphase.triangle_tree import TriangleTree
+from harness.narrowphase.triangle_tree import TriangleTree, radius_of
 
 # Pairs of nodes on the way at any time, at most: two a level, and fewer than 64 levels a tree.
 DEPTH = 256
@@ -91,7 +93,7 @@ def halves(
     proximity : gives the Proximity of two discs
     """
     right_a, right_b = trees.a.right[nodes.a], trees.b.right[nodes.b]
-    larger_a = right_a >= 0 and trees.a.discs[nodes.a, 3] * at.size_a >= trees.b.discs[nodes.b, 3] * at.size_b
+    larger_a = right_a >= 0 and radius_of(trees.a, nodes.a) * at.size_a >= radius_of(trees.b, nodes.b) * at.size_b
     if right_b < 0 or larger_a:
         left, right = NodePair(nodes.a + 1, nodes.b), NodePair(right_a, nodes.b)
         whole = disc_b(trees.b, at, nodes.b)

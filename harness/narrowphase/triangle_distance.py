@@ -17,11 +17,11 @@ from harness.narrowphase.simplex import (
     ALL_CORNERS,
     Nearest,
     Simplex,
+    depth_of_origin,
     extended,
     kept,
     nearest_on,
     nearest_on_triangle,
-    room_around_origin,
 )
 from harness.narrowphase.vectors import Triangle, Vector, dot, minus, plus, unit
 
@@ -108,7 +108,7 @@ def walk(one: Triangle, other: Triangle, towards: Vector, margin: float, enough:
         larger = extended(simplex, point, corner)
         step = nearest_on(larger)
         if step.corners == ALL_CORNERS:
-            if room_around_origin(larger.a, larger.b, larger.c, larger.d) > 0.0:
+            if depth_of_origin(larger.a, larger.b, larger.c, larger.d) > 0.0:
                 return Walk(0.0, 0.0, unit(axis), larger)
             step = nearest_on_flat(larger.a, larger.b, larger.c, larger.d)
         if not step.squared < squared:  # rounding ends the descent

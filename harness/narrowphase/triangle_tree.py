@@ -13,8 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints
-from harness.kernel import kernel
+from harness.kernel import kernel, strict_step
+from harness.narrowphase.vectors import Vector
 
+# Columns of `TriangleTree.discs` behind the centre; those of the normal are between them.
+RADIUS, THICKNESS = 3, 7
 # Relative surplus of spheres and slabs, more than rounding takes from them.
 SURPLUS = 1e-12
 
@@ -24,7 +27,8 @@ class TriangleTree(NamedTuple):
 
     Attributes
     ----------
-    discs : (2 f - 1, 8) float array; of each node a centre, radius, unit normal, and half the thickness along it
+    discs : (2 f - 1, 8) float array; of each node a centre, radius, unit normal, and half the thickness along it.
+        The functions below read them
     right : (2 f - 1,) int array, the right child; of a leaf -1 - its triangle
     parent : (2 f - 1,) int array; of the root itself
     corners : (f, 3, 3) float array
@@ -107,8 +111,34 @@ def enclose(tree: TriangleTree, triangles: Ints, normals: Floats, node: int) -> 
             for axis in range(3):
                 squared += (tree.corners[triangle, corner, axis] - centre[axis]) ** 2
             radius = max(radius, squared)
-    tree.discs[node, :3] = centre
-    tree.discs[node, 3] = sqrt(radius) * (1.0 + SURPLUS)
-    tree.discs[node, 4:7] = normal
-    tree.discs[node, 7] = 0.5 * (highest - lowest) + SURPLUS
+    disc = tree.discs[node]
+    disc[:RADIUS], disc[RADIUS + 1 : THICKNESS] = centre, normal
+    disc[RADIUS] = sqrt(radius) * (1.0 + SURPLUS)
+    disc[THICKNESS] = 0.5 * (highest - lowest) + SURPLUS
     return int(np.argmax(high - low))
+
+
+@strict_step
+def centre_of(tree: TriangleTree, node: int) -> Vector:
+    """The centre of the disc of a node."""
+    d = tree.discs
+    return d[node, 0], d[node, 1], d[node, 2]
+
+
+@strict_step
+def normal_of(tree: TriangleTree, node: int) -> Vector:
+    """The unit normal of the disc of a node."""
+    d, first = tree.discs, RADIUS + 1
+    return d[node, first], d[node, first + 1], d[node, first + 2]
+
+
+@strict_step
+def radius_of(tree: TriangleTree, node: int) -> float:
+    """How far what is below a node reaches from its centre."""
+    return float(tree.discs[node, RADIUS])
+
+
+@strict_step
+def thickness_of(tree: TriangleTree, node: int) -> float:
+    """How far what is below a node reaches from its centre along the normal."""
+    return float(tree.discs[node, THICKNESS])

@@ -26,14 +26,14 @@ class FoldedPaths(NamedTuple):
     ----------
     origins : m, at time 0
     velocities : m/s, after time 0
-    room : m, how far from the middle of the box each centre can come
+    inner_half : m, how far from the middle of the box each centre can come
     first_fold : s, when the wall ahead is met, inf where a body does not move
     period : s between two folds
     """
 
     origins: Floats
     velocities: Floats
-    room: Floats
+    inner_half: Floats
     first_fold: Floats
     period: Floats
 
@@ -63,15 +63,15 @@ def folded_paths(bodies: Bodies, box: Box) -> FoldedPaths:
     box : Box
     """
     velocities = Trajectory(bodies, box, folded=True, turning=False).velocities
-    room = box.half - bodies.radii[:, None]
-    free = room > 0.0  # a body as large as the box stays in the middle
+    inner_half = box.half - bodies.radii[:, None]
+    free = inner_half > 0.0  # a body as large as the box stays in the middle
     origins, velocities = np.where(free, bodies.positions, 0.0), np.where(free, velocities, 0.0)
-    room = np.where(free, room, 0.0)
+    inner_half = np.where(free, inner_half, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ahead = np.where(velocities > 0.0, room, -room)
+        ahead = np.where(velocities > 0.0, inner_half, -inner_half)
         first_fold = np.where(velocities == 0.0, inf, (ahead - origins) / velocities)
-        period = np.where(velocities == 0.0, inf, 2.0 * room / np.abs(velocities))
-    return FoldedPaths(origins, velocities, room, first_fold, period)
+        period = np.where(velocities == 0.0, inf, 2.0 * inner_half / np.abs(velocities))
+    return FoldedPaths(origins, velocities, inner_half, first_fold, period)
 
 
 def straight_pieces(paths: FoldedPaths, i: int, j: int, begin: float, end: float) -> Iterator[StraightPiece]:
@@ -135,7 +135,7 @@ def state_on_leg(paths: FoldedPaths, body: int, axis: int, leg: int, time: float
     if leg == 0:
         return paths.origins[body, axis] + v * time, v
     # the wall ahead is met by odd folds, the one behind by even ones
-    room = paths.room[body, axis]
-    wall = room if (v > 0.0) == (leg % 2 == 1) else -room
+    half = paths.inner_half[body, axis]
+    wall = half if (v > 0.0) == (leg % 2 == 1) else -half
     back = -v if leg % 2 == 1 else v
     return wall + back * (time - fold_time(paths, body, axis, leg)), back

@@ -67,7 +67,7 @@ def sphere_contacts(
         Of spheres: each encounter is a contact.
     """
     paths, radii = folded_paths(bodies, box), bodies.radii * (1.0 + margin)
-    cuts = np.linspace(0.0, duration, (windows or _windows(bodies, paths.room, duration)) + 1)
+    cuts = np.linspace(0.0, duration, (windows or _windows(bodies, paths.inner_half, duration)) + 1)
     parts = [
         _encounters(paths, radii, window)
         for window in _near(bodies, radii, box, cuts)
@@ -82,11 +82,11 @@ def sphere_contacts(
     return Contacts.of_spheres(duration, joined.pairs, joined.begin, joined.end)
 
 
-def _windows(bodies: Bodies, room: Floats, duration: float) -> int:
+def _windows(bodies: Bodies, inner_half: Floats, duration: float) -> int:
     """One for all pairs at once, or as many as let the typical body move by its size in each."""
     speeds = np.linalg.norm(bodies.velocities, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        folds = np.nan_to_num(np.abs(bodies.velocities) * duration / (2.0 * room), posinf=0.0).clip(0.0)
+        folds = np.nan_to_num(np.abs(bodies.velocities) * duration / (2.0 * inner_half), posinf=0.0).clip(0.0)
     pieces = (len(bodies) - 1) * (len(bodies) / 2 + folds.sum())
     if pieces <= FEW_PIECES:
         return 1

@@ -70,20 +70,20 @@ class _DecimalPaths:
 
     def _at(self, body: int, time: Decimal) -> tuple[Vector, Vector]:
         place = zip(self._origins[body], self._velocities[body], self._rooms[body], strict=True)
-        axes = [_folded(x, v, room, time) for x, v, room in place]
+        axes = [_folded(x, v, half, time) for x, v, half in place]
         return tuple(x for x, _ in axes), tuple(v for _, v in axes)
 
 
-def _folded(x: Decimal, v: Decimal, room: Decimal, time: Decimal) -> tuple[Decimal, Decimal]:
-    """Coordinate and velocity on one axis: the straight line, mirrored into [-room, room]."""
+def _folded(x: Decimal, v: Decimal, half: Decimal, time: Decimal) -> tuple[Decimal, Decimal]:
+    """Coordinate and velocity on one axis: the straight line, mirrored into [-half, half]."""
     y = x + v * time
-    if -room <= y <= room:
+    if -half <= y <= half:
         return y, v
-    if room == 0:
+    if half == 0:
         return Decimal(0), Decimal(0)
-    phase = (y + room) % (4 * room)  # has the sign of y + room
-    phase += 4 * room if phase < 0 else 0
-    return (phase - room, v) if phase <= 2 * room else (3 * room - phase, -v)
+    phase = (y + half) % (4 * half)  # has the sign of y + half
+    phase += 4 * half if phase < 0 else 0
+    return (phase - half, v) if phase <= 2 * half else (3 * half - phase, -v)
 
 
 def _difference(a: Vector, b: Vector) -> Vector:

@@ -1,4 +1,4 @@
-"""Compile every kernel of this room, and import what it needs, before a clock runs."""
+"""Compile every kernel of this folder, and import what it needs, before a clock runs."""
 
 from __future__ import annotations
 

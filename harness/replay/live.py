@@ -20,12 +20,12 @@ Answer = Callable[[Mapping[str, str]], Mapping[str, Any]]
 
 
 class LiveServer(ThreadingHTTPServer):
-    """Serves a page, and what its settings lead to, on a free port of this machine.
+    """Serves a page, and what its inputs lead to, on a free port of this machine.
 
     Parameters
     ----------
     page : HTML
-    answer : from the settings on the page to a JSON document; it is asked one question at a time
+    answer : from the inputs on the page to a JSON document; it is asked one question at a time
     """
 
     daemon_threads = True
@@ -63,10 +63,10 @@ class LiveServer(ThreadingHTTPServer):
         if not isinstance(sys.exc_info()[1], ConnectionError | TimeoutError):
             super().handle_error(request, client_address)
 
-    def answer(self, settings: Mapping[str, str]) -> Mapping[str, Any]:
-        """What these settings lead to, after all that was asked before."""
+    def answer(self, inputs: Mapping[str, str]) -> Mapping[str, Any]:
+        """What these inputs lead to, after all that was asked before."""
         with self._lock:
-            return self._answer(settings)
+            return self._answer(inputs)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -76,7 +76,7 @@ class _Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         try:
             parts = urlsplit(self.path)
-            settings = dict(parse_qsl(parts.query, keep_blank_values=True, max_num_fields=100))
+            inputs = dict(parse_qsl(parts.query, keep_blank_values=True, max_num_fields=100))
         except ValueError:
             self.send_error(HTTPStatus.BAD_REQUEST)
             return
@@ -87,13 +87,13 @@ class _Handler(BaseHTTPRequestHandler):
         elif parts.path == "/":
             self._send("text/html; charset=utf-8", self.server.page)
         elif parts.path == "/run":
-            self._send("application/json", self._answered(settings))
+            self._send("application/json", self._answered(inputs))
         else:
             self.send_error(HTTPStatus.NOT_FOUND)
 
-    def _answered(self, settings: Mapping[str, str]) -> str:
+    def _answered(self, inputs: Mapping[str, str]) -> str:
         try:
-            return json.dumps(self.server.answer(settings), allow_nan=False)
+            return json.dumps(self.server.answer(inputs), allow_nan=False)
         except Exception as error:  # the page says it, and asks again
             return json.dumps({"error": f"This could not be answered: {type(error).__name__}: {error}."})
 

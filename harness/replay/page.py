@@ -26,8 +26,8 @@ _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const)\b)", re.MULTILINE)
 
 
-class Setting(NamedTuple):
-    """One thing that can be changed on a live page: a list to choose from where it has options, else a text."""
+class Input(NamedTuple):
+    """An input of the form on a live page: a list to choose from where it has options, else a text."""
 
     name: str
     label: str
@@ -68,21 +68,19 @@ def still_text(recording: Recording) -> str:
     return base64.b64encode(still_of(recording)).decode("ascii")
 
 
-def live_page(title: str, settings: Sequence[Setting], columns: Sequence[str]) -> str:
+def live_page(title: str, inputs: Sequence[Input], columns: Sequence[str]) -> str:
     """The page on which a person changes the scene and sees what it costs.
 
     Parameters
     ----------
     title : its heading
-    settings : what can be changed, with the values to begin with
+    inputs : of its form, with the values to begin with
     columns : of the table of costs
     """
     sentence = (
-        "Change a setting: the scene is run again at once, shown, and its hits and costs are put on top of the table."
+        "Change a value: the scene is run again at once, shown, and its hits and costs are put on top of the table."
     )
-    return _page(
-        title, sentence, (), settings=tuple(settings), columns=tuple(columns), alt="The scene that was run last."
-    )
+    return _page(title, sentence, (), inputs=tuple(inputs), columns=tuple(columns), alt="The scene that was run last.")
 
 
 def summary(recording: Recording) -> str:
@@ -100,9 +98,10 @@ def summary(recording: Recording) -> str:
 
 def described(recording: Recording) -> str:
     """The picture in words, for screen readers."""
-    sides = " × ".join(f"{2 * half:.4g}" for half in view_box(recording)[1])
-    room = "A box of" if recording.half_box is not None else "A room without walls of"
-    return f"{room} {sides} m with {summary(recording)}."
+    _, halves = view_box(recording)
+    sides = " × ".join(f"{2 * half:.4g}" for half in halves)
+    space = "A box of" if recording.half_box is not None else "A space without walls of"
+    return f"{space} {sides} m with {summary(recording)}."
 
 
 def _page(
@@ -114,7 +113,7 @@ def _page(
     still: str = "",
     alt: str = "",
     recording: Markup | None = None,
-    settings: tuple[Setting, ...] = (),
+    inputs: tuple[Input, ...] = (),
     columns: tuple[str, ...] = (),
 ) -> str:
     return _template().render(
@@ -125,7 +124,7 @@ def _page(
         still=still,
         alt=alt,
         recording=recording,
-        settings=settings,
+        inputs=inputs,
         columns=columns,
         style=Markup(_style()),
         script=Markup(_script()),

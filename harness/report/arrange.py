@@ -78,7 +78,7 @@ def arrange(
             )
         )
     values = {hashable(point.value(x)): point.value(x) for point in points} if x else {}
-    y = report.get("y") or DEFAULT_METRICS
+    y = report.get("y") or _timed(points)
     return Arrangement(
         x,
         tuple(sorted(values.values(), key=_order)),
@@ -87,6 +87,12 @@ def arrange(
         (y,) if isinstance(y, str) else tuple(y),
         _controls(runs, controls),
     )
+
+
+def _timed(points: Sequence[MeasuredPoint]) -> tuple[str, ...]:
+    """What is shown unless an experiment says: the clocks of what is tested at all; where nothing is, both."""
+    found = tuple(name for name in DEFAULT_METRICS if any((point.values(name) > 0.0).any() for point in points))
+    return found or DEFAULT_METRICS
 
 
 def _measured(record: ExperimentRecord, runs: pd.DataFrame, known: Correctness) -> list[MeasuredPoint]:

@@ -21,7 +21,7 @@ from harness.report.sentences.growth import change_sentences, exponent_sentences
 from harness.report.sentences.leaders import leader_sentences
 from harness.report.sentences.warnings import warning_sentences
 from harness.report.series import Arrangement
-from harness.report.words import metric_title, metric_unit
+from harness.report.words import is_noisy, metric_title, metric_unit
 from harness.store.records import ExperimentRecord, VerdictRow
 
 
@@ -96,7 +96,8 @@ def _single(arrangement: Arrangement) -> list[Markup]:
             metric_title(metric), quantity(point.median(metric), metric_unit(metric))
         )
         for metric in dict.fromkeys(metrics)
-        if point.summary(metric)
+        # a clock that stands at 0 is of what was not done at all
+        if point.summary(metric) and not (is_noisy(metric) and point.median(metric) == 0.0)
     ]
     return [Markup("{}.").format(Markup(", ").join(parts))] if parts else []
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -19,6 +21,23 @@ _SCRIPTS = ("sort.js", "finder.js", "parquet.js", "explore.js")
 def render(template: str, **values: Any) -> Markup:
     """A template of `harness/report/templates/`, filled in. What does not come as Markup is escaped."""
     return Markup(_environment().get_template(template).render(**values))
+
+
+def report_command(commands: Iterable[str]) -> str:
+    """The command that makes the pages of what these have kept: of the same results file, if they name one.
+
+    >>> report_command(["harness sweep x.yaml --db 'my results.db'"]), report_command(["harness sweep"])
+    ("harness report --db 'my results.db'", 'harness report')
+    """
+    for command in commands:
+        try:
+            words = shlex.split(command)
+        except ValueError:  # a quote that is not closed: no command of this program has one
+            continue
+        for word, following in zip(words, [*words[1:], ""], strict=True):
+            if word == "--db" or word.startswith("--db="):
+                return shlex.join(["harness", "report", "--db", word.partition("=")[2] or following])
+    return "harness report"
 
 
 def script() -> str:
@@ -52,6 +71,7 @@ def _environment() -> Environment:
         "style": Markup((templates / "style.css").read_text(encoding="utf-8")),
         "light": Markup(palette.variables(dark=False)),
         "dark": Markup(palette.variables(dark=True)),
+        "report_command": report_command,
         "outlines": [palette.OUTLINES[marker] for marker in palette.MARKERS],
     }
     return environment

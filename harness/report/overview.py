@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure
-from harness.report.map.fields import MethodMap, maps_of
+from harness.report.map.cells import MethodMap, maps_of
 from harness.report.map.figure import map_figure
 from harness.report.missing import is_judged
 from harness.report.quantity import plural

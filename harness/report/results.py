@@ -60,13 +60,13 @@ class Results:
                     record,
                     self.runs[self.runs["experiment"] == record.name],
                     folder_of(record.name, taken),
-                    controls(self.database, [record.name]),
-                    conditions(self.database, record.name),
-                    correctness(compared),
-                    pages,
-                    self.database,
-                    self.family,
-                    AtlasResults.of(Comparisons(compared)).parts,
+                    controls=controls(self.database, [record.name]),
+                    conditions=conditions(self.database, record.name),
+                    known=correctness(compared),
+                    all_pages=pages,
+                    database=self.database,
+                    family=self.family,
+                    surveyed=AtlasResults.of(Comparisons(compared)).parts,
                 )
             )
         return pages

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from harness.store.records import ComparisonRecord
+from harness.vocabulary import PipelineName
 
 ALL = "all"
 """The row of all families together."""
@@ -39,7 +40,7 @@ class TruthPart:
     def heading(self, engine: str) -> str:
         """An engine in few letters: of one that is stepped its library and the step."""
         found = self.asked[engine]
-        return f"{found['backend'].partition('/')[0]}, dt {_step(found['dt'])}" if found["dt"] else engine
+        return f"{PipelineName.read(found['backend']).backend}, dt {_step(found['dt'])}" if found["dt"] else engine
 
     @cached_property
     def families(self) -> list[str]:

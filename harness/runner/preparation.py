@@ -63,8 +63,8 @@ def prepare(
 
 
 def known_names() -> Names:
-    """The names of all backends that are declared, installed or not, and of all metrics."""
-    return Names(registry.names(), METRICS)
+    """The names of all backends that are declared, installed or not, with their abilities, and those of metrics."""
+    return Names(registry.names(), METRICS, registry.abilities_of)
 
 
 def examine(paths: Iterable[str | PathLike[str]], overrides: Mapping[str, object]) -> Prepared:

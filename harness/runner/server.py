@@ -15,8 +15,8 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 
 from harness.backends import registry
-from harness.backends.statement import ask_strangers_here
-from harness.process_limits import adopt_orphans, die_with_parent, memory_of_stranger_limited, out_of_memory
+from harness.backends.statement import ask_plugins_here
+from harness.process_limits import adopt_orphans, die_with_parent, memory_of_plugin_limited, out_of_memory
 from harness.runner.isolation import run_isolated
 from harness.runner.task import Report, Task
 from harness.runner.warm_up import warm_up
@@ -33,7 +33,7 @@ def main() -> None:
     if os.getppid() != parent:
         return
     adopt_orphans()
-    ask_strangers_here()
+    ask_plugins_here()
     with suppress(EOFError, ConnectionError):  # the other side has gone
         _prepare(channel, sys.argv[2])
         _serve(channel)
@@ -44,7 +44,7 @@ def _prepare(channel: Connection, backend: str) -> None:
     channel.send("started")
     if backend in registry.names():
         # a run will say what goes wrong, in its report, and has a limit of its own
-        with suppress(BaseException), memory_of_stranger_limited():
+        with suppress(BaseException), memory_of_plugin_limited():
             registry.create(backend)
     channel.send("ready")
     die_with_parent(False)

@@ -18,7 +18,7 @@ from harness.experiment.experiment import Experiment, Point
 from harness.measure.machine import fingerprint, machine_facts, package_versions, source_commit
 from harness.measure.metrics import METRICS
 from harness.measure.noise import Control, controls_of
-from harness.measure.verdicts import expected_refusals, judge
+from harness.measure.verdicts import expected_refusals, verdict_on
 from harness.motion.hits import Trace
 from harness.runner.compilation import compile_ahead
 from harness.runner.estimate import Estimate
@@ -357,6 +357,6 @@ def _verdict(
     kind: VerdictKind,
     known: Mapping[str, Control],
 ) -> VerdictRow:
-    verdict = judge(criterion, table, experiment.swept, kind, known)
+    verdict = verdict_on(criterion, table, experiment.swept, kind, known)
     row = criterion.model_dump(mode="json", exclude_none=True)
     return VerdictRow(row, verdict.verdict, verdict.statement, verdict.detail)

@@ -106,6 +106,42 @@ def hull_of(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Hull:
     return Hull(vertices, faces)
 
 
+def is_convex(hull: Hull, within: float) -> bool:
+    """Whether faces close a surface of which no vertex is farther outside than a distance: a hull of these vertices.
+
+    Parameters
+    ----------
+    hull : of finite vertices or not, and of faces that may be anything
+    within : in the units of the hull; what its faces and vertices may be off by rounding
+
+    >>> cube = convex_hull(np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)]))
+    >>> is_convex(cube, 1e-9), is_convex(hull_of(cube.vertices, cube.faces[:, ::-1]), 1e-9)
+    (True, False)
+    """
+    vertices, faces = hull.vertices, hull.faces
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3 or not len(faces):
+        return False
+    if not np.isfinite(vertices).all() or faces.min() < 0 or faces.max() >= len(vertices) or not _closed(faces):
+        return False
+    return outside(vertices, hull) <= within
+
+
+def outside(points: NDArray[np.float64], hull: Hull) -> float:
+    """How far the farthest of some points lies outside of a convex hull, along the normal of a face.
+
+    Negative where all lie inside; -inf of a hull whose faces have no area.
+    """
+    a, b, c = (hull.vertices[hull.faces[:, corner]] for corner in range(3))
+    normals = np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1)
+    # the normal of a sliver is mostly rounding
+    proper = areas > 1e-9 * float(areas.max())
+    normals = normals[proper] / areas[proper, None]
+    # not by BLAS, whose threads wait longer than this takes
+    heights = np.einsum("ij,kj->ik", points, normals) - np.einsum("ij,ij->i", normals, a[proper])
+    return float(heights.max(initial=-np.inf))
+
+
 def _outward(
     points: NDArray[np.float64], simplices: NDArray[np.int32], normals: NDArray[np.float64]
 ) -> NDArray[np.int32]:

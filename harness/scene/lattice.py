@@ -44,14 +44,14 @@ LATTICES = (
 )
 
 
-def sites(count: int, distance: float, room: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+def sites(count: int, distance: float, sides: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     """At least `count` sites, as far apart as the best of the lattices allows.
 
     Parameters
     ----------
     count : how many are wanted
     distance : the least distance of two sites
-    room : (3,) float array, sides of the box they must lie in, centred at the origin; zeros are allowed
+    sides : (3,) float array, sides of the box they must lie in, centred at the origin; zeros are allowed
 
     Returns
     -------
@@ -59,44 +59,44 @@ def sites(count: int, distance: float, room: NDArray[np.float64]) -> tuple[NDArr
     spacing : float, the distance of neighbours, at least `distance` (up to rounding, where they fit exactly)
     """
     choices = [(lattice, list(axes)) for lattice in LATTICES for axes in permutations(range(3))]
-    spacings = [_widest(lattice, room[axes] / distance, count) for lattice, axes in choices]
+    spacings = [_widest(lattice, sides[axes] / distance, count) for lattice, axes in choices]
     if not any(spacings):
-        spacings = [float(_count(lattice, room[axes] / distance)) for lattice, axes in choices]
+        spacings = [float(_count(lattice, sides[axes] / distance)) for lattice, axes in choices]
         spacing = 1.0
     else:
         spacing = max(spacings)
     lattice, axes = choices[int(np.argmax(spacings))]
-    found = _stretched(lattice, room[axes], spacing * distance)
+    found = _stretched(lattice, sides[axes], spacing * distance)
     # What rounding let in is not offered as room.
     return found[:, np.argsort(axes)], max(spacing * (1 - 2 * EXACTLY), 1.0) * distance
 
 
-def _widest(lattice: Lattice, room: NDArray[np.float64], count: int) -> float:
+def _widest(lattice: Lattice, sides: NDArray[np.float64], count: int) -> float:
     """The largest spacing, at least 1, with so many sites; 0 if there is none."""
-    if _count(lattice, room) < count:
+    if _count(lattice, sides) < count:
         return 0.0
     low, high = 1.0, 2.0
-    while _count(lattice, room / high) >= count and high < 2 * room.max() + 2:
+    while _count(lattice, sides / high) >= count and high < 2 * sides.max() + 2:
         low, high = high, 2 * high
     for _ in range(40):
         middle = (low + high) / 2
-        low, high = (middle, high) if _count(lattice, room / middle) >= count else (low, middle)
+        low, high = (middle, high) if _count(lattice, sides / middle) >= count else (low, middle)
     return low
 
 
-def _count(lattice: Lattice, room: NDArray[np.float64]) -> int:
-    """How many sites of spacing 1 are in a room."""
-    return sum(
-        _steps(room[2] - layer * lattice.layer, 2 * lattice.layer)
-        * _steps(room[1] - lattice.lines(layer, row)[1], 2 * lattice.row)
-        * _steps(room[0] - lattice.lines(layer, row)[0], 1.0)
-        for layer, row in product(range(2), range(2))
-    )
+def _count(lattice: Lattice, sides: NDArray[np.float64]) -> int:
+    """How many sites of spacing 1 are in a box."""
+    count = 0
+    for layer, row in product(range(2), range(2)):
+        x, y = lattice.lines(layer, row)
+        of_row = _steps(sides[0] - x, 1.0) * _steps(sides[1] - y, 2 * lattice.row)
+        count += of_row * _steps(sides[2] - layer * lattice.layer, 2 * lattice.layer)
+    return count
 
 
-def _stretched(lattice: Lattice, room: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
-    """The sites in a room, drawn apart along each axis until they reach its walls."""
-    scaled = room / spacing
+def _stretched(lattice: Lattice, sides: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """The sites in a box, drawn apart along each axis until they reach its walls."""
+    scaled = sides / spacing
     parts = []
     for layer, row in product(range(2), range(2)):
         x, y = lattice.lines(layer, row)
@@ -108,10 +108,10 @@ def _stretched(lattice: Lattice, room: NDArray[np.float64], spacing: float) -> N
         parts.append(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3))
     found = np.concatenate(parts)
     reach = found.max(axis=0)
-    stretch = np.divide(room, reach, out=np.zeros(3), where=reach > 0)
+    stretch = np.divide(sides, reach, out=np.zeros(3), where=reach > 0)
     return np.asarray((found - reach / 2) * stretch)
 
 
-def _steps(room: float, pitch: float) -> int:
-    """How many sites a pitch apart fit in a room, the first at its wall."""
-    return int(np.floor(room / pitch + EXACTLY)) + 1 if room >= -EXACTLY else 0
+def _steps(side: float, pitch: float) -> int:
+    """How many sites a pitch apart fit along a side, the first at its wall."""
+    return int(np.floor(side / pitch + EXACTLY)) + 1 if side >= -EXACTLY else 0

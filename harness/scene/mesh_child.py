@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from harness.child_process import Channel, Ending
 
 GIB = 1024**3
-# For the imports, on a machine with other things to do; nothing of a stranger's is read before.
+# For the imports, on a machine with other things to do; no file that is not trusted is read before.
 START_SECONDS = 120.0
 
 

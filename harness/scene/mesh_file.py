@@ -1,7 +1,7 @@
 """Reads a mesh file, refuses what is no surface, and normalises the rest.
 
 The file is taken as bytes, so that it cannot name other files, and read by its format's reader in `formats`.
-A mesh from a stranger is better read through `mesh_child`, which limits memory and time.
+A mesh that is not trusted is better read through `mesh_child`, which limits memory and time.
 """
 
 from __future__ import annotations
@@ -151,13 +151,13 @@ def _checked(mesh: PolygonMesh) -> PolygonMesh:
     triangles = int(np.maximum(lengths - 2, 0).sum())
     if triangles > MAX_FACES or len(vertices) > MAX_VERTICES:
         raise InputError(f"the mesh has {triangles} faces and {len(vertices)} vertices; at most {MAX_FACES} are read")
-    strangers = np.flatnonzero((corners < 0) | (corners >= len(vertices)))
-    if len(strangers):
-        owners = np.unique(np.searchsorted(np.cumsum(lengths), strangers, side="right"))
+    unknown = np.flatnonzero((corners < 0) | (corners >= len(vertices)))
+    if len(unknown):
+        owners = np.unique(np.searchsorted(np.cumsum(lengths), unknown, side="right"))
         where = f"line {mesh.face_line(int(owners[0]))}: " if mesh.face_line else ""
         raise InputError(
             f"{where}{len(owners)} of the mesh's faces name a vertex that does not exist, the first of them "
-            f"{corners[strangers[0]] + mesh.base}; there are {len(vertices)}, counted from {mesh.base}"
+            f"{corners[unknown[0]] + mesh.base}; there are {len(vertices)}, counted from {mesh.base}"
         )
     used = np.unique(corners)
     infinite = used[~np.isfinite(vertices[used]).all(axis=1)]

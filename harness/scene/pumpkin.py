@@ -114,7 +114,8 @@ def _ring(place: float, count: int) -> NDArray[np.float64]:
         scale = 1 - depth * groove
         return np.column_stack([radius * scale * np.cos(around), radius * scale * np.sin(around), height * scale])
     scale = 1 - 0.25 * np.sin(RIBS / 4 * around) ** 2
-    rise = height - float(_meridian(np.array([1 - STEM]))[1][0])
+    _, (foot,) = _meridian(np.array([1 - STEM]))
+    rise = height - float(foot)
     bend = 1.5 * rise**2
     return np.column_stack(
         [radius * scale * np.cos(around) + bend, radius * scale * np.sin(around), np.full(count, height)]

@@ -100,7 +100,8 @@ def _without_unused(
     vertices: NDArray[np.float64], faces: NDArray[np.int32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     used = np.unique(faces)
-    return vertices[used], _compact(faces)[0]
+    compact, _ = _compact(faces)
+    return vertices[used], compact
 
 
 def _compact(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], int]:

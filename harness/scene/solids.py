@@ -11,7 +11,6 @@ from harness.scene.pumpkin import pumpkin
 from harness.scene.simplify import normalised
 
 CUBE_FACES = 12
-FINEST_ICOSPHERE = 20 * 4**8
 
 
 def make_solid(name: str, faces: int | None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

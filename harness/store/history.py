@@ -68,6 +68,19 @@ class History:
                 found.setdefault((key, repeat), set()).add(name)
         return [(key, repeat) for (key, repeat), names in found.items() if wanted[key] - names]
 
+    def values(self, metric: str, keys: Iterable[str]) -> dict[str, set[float]]:
+        """What the newest runs of these keys that ended well report of a metric; nothing of a key without any."""
+        found: dict[str, set[float]] = {}
+        with as_input_error(self._path):
+            for key, value in self._connection.execute(
+                "SELECT key, value FROM current_run JOIN point ON point.id = current_run.point "
+                "JOIN metric ON metric.run = current_run.id "
+                "WHERE status = 'ok' AND name = ? AND value IS NOT NULL AND key IN (SELECT value FROM json_each(?))",
+                (metric, json.dumps(list(keys))),
+            ):
+                found.setdefault(key, set()).add(value)
+        return found
+
     def unfinished_sweeps(self, command: str) -> list[int]:
         """The newest sweeps, back to the first that finished or had another command line than this."""
         with as_input_error(self._path):

@@ -93,7 +93,16 @@ def snapshot(path: str | Path, sweep: int) -> Snapshot:
     last = {parameters: key for _, key, parameters, *_ in rows}
     runs = tuple(
         RunRecord(
-            name or "", key, repeat, status, reason, number, bool(grade), json.loads(parameters), metrics[run], machine
+            experiment=name or "",
+            point=key,
+            repeat=repeat,
+            status=status,
+            reason=reason,
+            sweep=number,
+            timing_grade=bool(grade),
+            parameters=json.loads(parameters),
+            metrics=metrics[run],
+            machine=machine,
         )
         for run, key, parameters, repeat, status, reason, number, grade, machine, name in rows
         if last[parameters] == key

@@ -103,11 +103,20 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
     points = {row[2]: json.loads(row[3]) for row in rows}
     return [
         RunRecord(
-            name, key, repeat, status, reason, sweep, bool(timing_grade), points[key], metrics[run], machine,
-            json.loads(conditions),
+            experiment=name,
+            point=key,
+            repeat=repeat,
+            status=status,
+            reason=reason,
+            sweep=sweep,
+            timing_grade=bool(timing_grade),
+            parameters=points[key],
+            metrics=metrics[run],
+            machine=machine,
+            conditions=json.loads(conditions),
         )
         for run, name, key, _, repeat, status, reason, sweep, timing_grade, machine, conditions in rows
-    ]  # fmt: skip
+    ]
 
 
 def controls(path: str | Path, experiments: Iterable[str] | None = None) -> list[ControlRecord]:

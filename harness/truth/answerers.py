@@ -16,7 +16,7 @@ from harness.errors import InputError
 from harness.pair.impact import time_of_impact
 from harness.truth.case_scene import CaseScenes, Kind
 from harness.truth.families import TOLERANCE
-from harness.vocabulary import MethodName
+from harness.vocabulary import MethodName, PipelineName
 
 OWN = "own"
 
@@ -73,19 +73,19 @@ def questions(names: list[str], steps: list[float]) -> list[Question]:
     """
     found = []
     for name in names:
-        backend, slash, _ = name.partition("/")
+        backend, algorithm = PipelineName.read(name)
         if name == OWN:
             found.append(Question(name, "", 0.0))
             continue
         if backend not in registry.names():
             raise InputError(f'there is no backend "{name}"; there are {OWN}, {", ".join(registry.names())}')
-        if slash and "/" in MethodName.read(name, "mesh").short:
+        if algorithm is not None and PipelineName.read(MethodName.read(name, "mesh").short).algorithm is not None:
             alone = MethodName.read(backend, "mesh")
             raise InputError(
                 f"{name}: of one pair there is nothing to leave out; name {OWN} for the engine, {backend} for when the "
                 f"library itself says that bodies meet, or {backend}/{alone.algorithm} for its test, frame by frame"
             )
-        if slash or not _says_when(backend):
+        if algorithm is not None or not _says_when(backend):
             found += [Question(name, backend, dt) for dt in steps]
         else:
             found.append(Question(name, backend, 0.0))

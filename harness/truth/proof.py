@@ -34,7 +34,8 @@ def prove(cases: Cases, solids: Solids) -> list[str]:
             reasons[place] = reasons[place] or reason
 
     rows = np.array([place for place, reason in enumerate(reasons) if not reason and cases.lower[place] > 0.0], int)
-    add(rows, apart(cases.some(rows), solids, cases.lower[rows])[0])
+    hindered, _ = apart(cases.some(rows), solids, cases.lower[rows])
+    add(rows, hindered)
     rows = np.array([place for place, reason in enumerate(reasons) if not reason and cases.upper[place] < np.inf], int)
     times = cases.upper[rows]
     found = touching(cases.some(rows), solids, times)

@@ -24,9 +24,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from harness.arrays import Flags, Floats, Ints
+from harness.truth.clearance import PlacedPart, clearance_of_discs, clearance_of_triangles, placed_corners
 from harness.truth.flights import Flights
 from harness.truth.parts import Parts
-from harness.truth.room import PlacedPart, placed_corners, room_of_discs, room_of_triangles
 from harness.truth.vectors import cross, dot, norm, normalised, rotations, turned
 
 # Cells looked at together: their arrays stay in the processor's cache.
@@ -240,15 +240,15 @@ def _unproven(parts: Parts, motion: _Motion, cells: Cells) -> tuple[Cells, Flags
         else:
             axis = (a if guess == 1 else b).normal
             axis = np.where(dot(axis, way) < 0.0, -axis, axis)
-        room = room_of_discs(a, b, axis, way, drift[:, left], half[left])
-        open_[left] = room > margin[left]
+        clearance = clearance_of_discs(a, b, axis, way, drift[:, left], half[left])
+        open_[left] = clearance > margin[left]
     left = np.flatnonzero(~open_)
     triangles, others = parts.leaves[cells.first[left]], parts.leaves[cells.second[left]]
     tried = np.flatnonzero((triangles >= 0) & (others >= 0))
     if len(tried):
         which = left[tried]
         a, b = _some(one, which), _some(other, which)
-        room = room_of_triangles(
+        clearance = clearance_of_triangles(
             placed_corners(parts, a, triangles[tried]),
             placed_corners(parts, b, others[tried]),
             (a, b),
@@ -256,7 +256,7 @@ def _unproven(parts: Parts, motion: _Motion, cells: Cells) -> tuple[Cells, Flags
             (offset[:, which], drift[:, which]),
             half[which],
         )
-        open_[which] = room > margin[which]
+        open_[which] = clearance > margin[which]
         left = np.flatnonzero(~open_)
     fastest = norm(drift[:, left])
     for part in (one, other):

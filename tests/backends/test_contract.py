@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from harness.backends.contract import ContractError, require_gaps, require_impacts
+from harness.backends.contract import (
+    ContractError,
+    made,
+    read_only,
+    require_counters,
+    require_gaps,
+    require_impacts,
+    require_pairs,
+)
 from harness.backends.protocol import queries, set_accuracy
 
 PAIRS = [[0, 1], [0, 2]]
@@ -82,3 +90,59 @@ def test_a_backend_that_does_not_say_answers_collisions_alone_and_has_no_knob():
     assert not set_accuracy(plain, 1e-3)
     assert set_accuracy(tunable, 1e-3)
     assert tunable.accuracy == 1e-3
+
+
+@pytest.mark.parametrize(
+    ("counters", "told"),
+    [
+        (7, "must be numbers by name, not int"),
+        ({"frames": 1}, "it cannot count frames, only pair_tests, narrow_tests"),
+        ({"energy_drift": 0.0}, "it cannot count energy_drift"),
+        ({"narrow_tests": -5}, "its counter narrow_tests must be 0 or more, not -5"),
+        ({"narrow_tests": np.nan}, "not nan"),
+        ({"narrow_tests": "many"}, "not 'many'"),
+    ],
+)
+def test_counters_that_count_no_work_are_refused(counters, told):
+    with pytest.raises(ContractError, match=told):
+        require_counters("mine", counters)
+
+
+def test_counters_stay_whole_numbers():
+    assert repr(require_counters("mine", {"pair_tests": np.int64(3), "fcl_tests": 0})) == (
+        "{'pair_tests': 3, 'fcl_tests': 0}"
+    )
+
+
+class Lazy:
+    """An answer that is worked out when somebody looks at it."""
+
+    looked_at = 0
+
+    def __array__(self, dtype=None, copy=None):
+        self.looked_at += 1
+        return np.array(PAIRS)
+
+
+def test_an_answer_that_is_worked_out_later_is_worked_out_at_once_and_once():
+    lazy = Lazy()
+    found = made((lazy, [0.0, 0.5], None))
+    assert [type(part) for part in found[:2]] == [np.ndarray, np.ndarray]
+    assert require_gaps("mine", found, 3, 0.5).pairs.tolist() == PAIRS
+    assert lazy.looked_at == 1
+    assert made(None) is None
+    with pytest.raises(ContractError, match="is no array"):
+        require_pairs("mine", made([[0, 1], [2]]), 3)
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_poses_can_neither_be_written_to_nor_made_writable(count):
+    poses = np.zeros((count, 3))
+    given = read_only(poses)
+    assert given.shape == (count, 3)
+    with pytest.raises(ValueError, match="read-only"):
+        given[:] = 1.0
+    with pytest.raises(ValueError, match="cannot set WRITEABLE"):
+        given.flags.writeable = True
+    poses[:] = 2.0
+    assert (given == 2.0).all()

@@ -1,4 +1,4 @@
-"""A stranger's backend can do whatever it likes when it is asked what it is: it costs its own line only."""
+"""A plugin can do whatever it likes when it is asked what it is: it costs its own line only."""
 
 import json
 import os
@@ -43,7 +43,7 @@ def installed(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "way", slow_beyond(sorted(WAYS, key=lambda way: way not in ("exits", "is no Python", "points to nothing")), 3)
 )
-def test_why_a_strangers_backend_cannot_be_used_is_told_in_one_line(installed, way):
+def test_why_a_plugin_cannot_be_used_is_told_in_one_line(installed, way):
     installed(way)
     said = statement("odd", 4.0)
     assert said.missing.startswith(WAYS[way])
@@ -52,7 +52,7 @@ def test_why_a_strangers_backend_cannot_be_used_is_told_in_one_line(installed, w
 
 
 @pytest.mark.parametrize("way", slow_beyond(["goes elsewhere", "prints without end", "leaves a process"]))
-def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, capfd):
+def test_what_a_plugin_does_besides_is_not_noticed(installed, way, capfd):
     installed(way)
     here = os.getcwd()
     said = statement("odd", 100.0)
@@ -65,7 +65,7 @@ def test_what_a_strangers_backend_does_besides_is_not_noticed(installed, way, ca
 @pytest.mark.parametrize(
     ("way", "missing"), [("leaves a process", None), ("leaves a process and exits", WAYS["exits"])]
 )
-def test_what_a_strangers_backend_left_behind_is_ended(installed, monkeypatch, way, missing):
+def test_what_a_plugin_left_behind_is_ended(installed, monkeypatch, way, missing):
     installed(way)
     mark = uuid.uuid4().hex
     monkeypatch.setenv(MARK, mark)
@@ -144,3 +144,13 @@ def test_nobody_takes_a_name_of_ours(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
     assert registry.ours("fcl")
     assert registry.create("fcl").name == "fcl"
+
+
+@pytest.mark.parametrize("name", [name for name in registry.names() if registry.ours(name)])
+def test_what_is_read_of_a_backend_is_what_it_says_once_it_is_imported(name):
+    read, said = registry.abilities_of(name), statement(name)
+    if said.missing is not None:
+        pytest.skip(said.missing)
+    assert read.queries == said.queries
+    assert read.shapes in (None, tuple(said.tolerance))  # one that has another's shapes does not write them out
+    assert set(read.gap_shapes or ()) <= set(said.tolerance)

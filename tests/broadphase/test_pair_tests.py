@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from harness.broadphase.brute_force import BruteForce
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.broadphase.uniform_grid import CELLS_PER_BODY, UniformGrid
 from harness.scene.box import Box
@@ -20,13 +19,6 @@ def work_of(method, radii, packing):
     detector = method(radii, box)
     detector.close_pairs(positions)
     return detector.pair_tests
-
-
-def test_brute_force_tests_every_pair_every_frame():
-    detector = BruteForce(np.ones(10))
-    for _ in range(3):
-        detector.close_pairs(np.zeros((10, 3)))
-    assert detector.pair_tests == 3 * 45
 
 
 @pytest.mark.parametrize("packing", [0.001, 0.05, 0.2, 0.5])

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.broadphase.brute_force import BruteForce
 from harness.broadphase.sap import LANES, SweepAndPrune
 from harness.scene.box import Box
+from tests.broadphase.every_pair import touching_pairs
 from tests.conftest import examples, slow_beyond
 
 PLACES = ("inside", "near", "wall", "corner", "outside", "coincident", "touching", "lattice", "plane")
@@ -17,7 +17,7 @@ MOTIONS = ("rest", "drift", "leap", "anew", "mirror", "flatten", "collapse", "sh
 def assert_exact(detector, positions):
     pairs = detector.close_pairs(positions)
     assert pairs.dtype == np.int64
-    assert np.array_equal(pairs, BruteForce(detector.radii).close_pairs(positions))
+    assert np.array_equal(pairs, touching_pairs(positions, detector.radii))
 
 
 def crowd(radii, packing, seed=259, shape=(1.0, 1.0, 1.0)):
@@ -205,7 +205,7 @@ def test_any_layout_and_number_type_of_the_same_positions_gives_the_same_pairs()
     rng = np.random.default_rng(11)
     positions = rng.uniform(-1, 1, (200, 3)).astype(np.float32).astype(np.float64)
     detector = SweepAndPrune(np.full(200, 0.2), Box(np.ones(3)))
-    expected = BruteForce(detector.radii).close_pairs(positions)
+    expected = touching_pairs(positions, detector.radii)
     frozen = positions.copy()
     frozen.setflags(write=False)
     for same in (positions.tolist(), positions.astype(np.float32), np.asfortranarray(positions), frozen):

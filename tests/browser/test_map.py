@@ -46,9 +46,9 @@ def test_a_scene_is_answered_from_the_nearest_measured_field_which_is_named(visi
 def test_without_a_script_the_fields_stand_in_a_table(visit, overview):
     page = visit(overview.as_uri(), java_script_enabled=False).page
     assert not page.locator("form.finder").is_visible()
-    page.locator("summary", has_text="fields as a table").click()
-    assert page.locator("#fields tbody tr").count() == 8
-    assert page.locator("#fields tbody tr").first.is_visible()
+    page.locator("summary", has_text="cells as a table").click()
+    assert page.locator("#cells tbody tr").count() == 8
+    assert page.locator("#cells tbody tr").first.is_visible()
 
 
 def test_every_field_of_the_map_has_its_letter_so_that_nothing_hangs_on_colour_and_print_has_no_form(visit, overview):

@@ -78,6 +78,39 @@ LIARS = {
                 scene = dataclasses.replace(scene, hulls=self.own_hulls)
             super().load(scene)
     """,
+    # the same, with faces that look as if nothing were outside of them
+    "halves-without-faces": """
+        own_hulls_tolerance = 1e-9
+        def load(self, scene):
+            if scene.shape == "hull":
+                solids = {solid: scene.solid_of(solid[1], solid[0]) for solid in scene.solids}
+                halves = {solid: hull_of(one.vertices / 2, one.faces) for solid, one in solids.items()}
+                self.own_hulls = {solid: hull_of(one.vertices, [[0, 0, 0]]) for solid, one in halves.items()}
+                scene = dataclasses.replace(scene, hulls=halves)
+            super().load(scene)
+    """,
+    "hulls-inside-out": """
+        own_hulls_tolerance = 1e-9
+        def load(self, scene):
+            super().load(scene)
+            if scene.shape == "hull":
+                solids = {solid: scene.solid_of(solid[1], solid[0]) for solid in scene.solids}
+                self.own_hulls = {one: hull_of(of.vertices / 2, of.faces[:, ::-1]) for one, of in solids.items()}
+    """,
+    "hulls-of-nobody": """
+        own_hulls_tolerance = 1e-9
+        def load(self, scene):
+            super().load(scene)
+            if scene.shape == "hull":
+                one = scene.solid_of(float(scene.bodies.sizes[0]))
+                self.own_hulls = {123.5: hull_of(one.vertices, one.faces)}
+    """,
+    "tolerates-by-lot": """
+        asked = 0
+        def tolerance(self, shape):
+            self.asked += 1
+            return 1e-3 if self.asked % 3 else 1e-15
+    """,
     "inflates-by-1e-3": """
         def load(self, scene):
             bodies = scene.bodies.copy()
@@ -119,7 +152,9 @@ LIARS = {
 
 # The kinds of finding by which a liar may be named.
 BY_CONTRACT = ("writes-poses", "doubles", "unsorted", "turned-round", "out-of-range", "floats")
-BY_CLAIM = ("halves-hulls", "tolerates-all", "tolerates-nan")
+BY_CLAIM = (
+    "halves-hulls", "halves-without-faces", "hulls-inside-out", "hulls-of-nobody", "tolerates-all", "tolerates-nan",
+)  # fmt: skip
 BY_CHANGE = {"drops-at-random": "random", "random-verdicts": "random", "learns": "depends on order"}
 
 HEAD = """

@@ -14,12 +14,12 @@ from tests.conftest import cube_mesh, random_scene
 SLOW = (
     *("drops-at-random", "random-verdicts", "drops-neighbours", "last-frame", "halves-hulls", "inflates-by-1e-3"),
     *("spheres-for-all", "sees-all", "doubles", "unsorted", "turned-round", "out-of-range"),
-    *("floats", "tolerates-nan", "raises", "blind"),
+    *("floats", "tolerates-nan", "raises", "blind", "hulls-inside-out", "hulls-of-nobody", "tolerates-by-lot"),
 )
 
 
 # Named when they load or at their first hits, so that few poses do.
-AT_ONCE = ("blind", "sees-all", *BY_CONTRACT, *BY_CLAIM)
+AT_ONCE = ("blind", "sees-all", "tolerates-by-lot", *BY_CONTRACT, *BY_CLAIM)
 
 
 def marked(names):
@@ -91,6 +91,12 @@ def test_a_breach_of_the_contract_names_the_backend(name, judged):
 @pytest.mark.parametrize("name", marked(BY_CLAIM))
 def test_what_a_backend_claims_is_bounded(name, judged):
     assert [failure.kind for failure in judged(name).failures if failure.pose == LOADING] == ["claim"]
+
+
+@pytest.mark.slow
+def test_a_tolerance_that_changes_is_none(judged):
+    failure = next(one for one in judged("tolerates-by-lot").failures if one.pose == LOADING)
+    assert failure.reason == "it declares a tolerance of 1e-15 one time and of 0.001 another, of the same shape"
 
 
 @pytest.mark.parametrize("name", marked(BY_CHANGE))

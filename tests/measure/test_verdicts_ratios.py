@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from harness.measure.noise import Control
-from harness.measure.verdicts import judge
+from harness.measure.verdicts import verdict_on
 from tests.measure.verdict_rows import Row, expected, judged, table
 
 
@@ -70,7 +70,7 @@ def test_a_ratio_of_counts_needs_no_repeats() -> None:
 def test_a_ratio_of_clocks_keeps_the_noise_floor(controls: Mapping[str, Control], outcome: str, said: str) -> None:
     runs = table(*timed(brute=list(2.0 * DRIFT), grid=list(DRIFT)))
     row = Row("run_seconds", {"algorithm": "grid"}, ratio_to={"algorithm": "brute"}, at_most=0.55)
-    verdict = judge(row, runs, ["algorithm"], "claim", controls)
+    verdict = verdict_on(row, runs, ["algorithm"], "claim", controls)
     assert verdict.verdict == outcome
     assert said in verdict.statement
 

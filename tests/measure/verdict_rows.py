@@ -10,7 +10,7 @@ from typing import Any
 
 import pandas as pd
 
-from harness.measure.verdicts import Kind, Verdict, judge
+from harness.measure.verdicts import Kind, Verdict, verdict_on
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def table(*points: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def judged(row: Row, runs: pd.DataFrame, *swept: str, kind: Kind = "claim") -> Verdict:
-    verdict = judge(row, runs, swept, kind)
+    verdict = verdict_on(row, runs, swept, kind)
     json.dumps(verdict.detail, allow_nan=False)
     assert verdict.statement
     return verdict

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-PAIR, WALL = 0, 1
+from harness.motion.predictive.codes import Event
+
+PAIR, WALL = Event.PAIR, Event.WALL
 
 
 def dot(a, b):

@@ -11,8 +11,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from harness.backends.fcl_objects import FclObjects
+from harness.motion.predictive.codes import Event
 
-PAIR, WALL = 0, 1
+PAIR, WALL = Event.PAIR, Event.WALL
 
 
 class SolidReference:

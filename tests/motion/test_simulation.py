@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from harness.errors import InputError
 from harness.motion.predictive import grids
+from harness.motion.predictive.codes import Event
 from harness.motion.predictive.simulation import Simulation
 from harness.scene.random_packing import add_at_random
 
@@ -222,12 +223,12 @@ def test_ties_go_by_kind_then_by_numbers():
     simulation = Simulation(positions, velocities, [0.5] * 9, [1] * 9, [10, 10, 10], "elastic", record=True)
     simulation.advance(1.5)
     assert [(e["kind"], e["i"], e["j"]) for e in simulation.events] == [
-        (0, 0, 1),
-        (0, 2, 3),
-        (0, 4, 5),
-        (1, 6, -1),
-        (1, 7, -1),
-        (1, 8, -1),
+        (Event.PAIR, 0, 1),
+        (Event.PAIR, 2, 3),
+        (Event.PAIR, 4, 5),
+        (Event.WALL, 6, -1),
+        (Event.WALL, 7, -1),
+        (Event.WALL, 8, -1),
     ]
 
 
@@ -246,7 +247,7 @@ def test_relabelling_changes_names_only(response):
     one.advance(np.inf, max_events=300)
     other.advance(np.inf, max_events=300)
     assert np.allclose(one.events["time"], other.events["time"], rtol=1e-6, atol=1e-9)
-    named = [sorted(order[[e["i"], e["j"]]]) if e["kind"] == 0 else [order[e["i"]], -1] for e in other.events]
+    named = [sorted(order[[e["i"], e["j"]]]) if e["kind"] == Event.PAIR else [order[e["i"]], -1] for e in other.events]
     assert named == [[e["i"], e["j"]] for e in one.events]
 
 
@@ -271,7 +272,7 @@ def test_onsets_are_those_of_the_folded_paths():
     simulation = gas(count=12, packing=0.3, response="none", record=True)
     shadow = gas(count=12, packing=0.3, response="none")
     simulation.advance(30.0)
-    events = simulation.events[simulation.events["kind"] == 0]
+    events = simulation.events[simulation.events["kind"] == Event.PAIR]
     radii = simulation._start.radii
     times = np.linspace(0, 30, 60_001)
     paths = np.array([shadow.positions_at(t) for t in times])

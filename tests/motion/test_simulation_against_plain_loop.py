@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from harness.motion.predictive.codes import Event
 from harness.motion.predictive.simulation import Simulation
 from tests.motion.slow_reference import Reference
 
@@ -62,7 +63,7 @@ def test_the_scheduler_meets_the_events_of_the_plain_loop(scene, search):
     expected = until_too_close_to_call(reference, 1e-9 * scale)
     found = simulation.events[: len(expected)]
     assume(simulation.counters["stalled_events"] == 0)
-    assert [(int(e["kind"]), int(e["i"]), int(e["wall"] if e["kind"] else e["j"])) for e in found] == [
+    assert [(int(e["kind"]), int(e["i"]), int(e["wall"] if e["kind"] == Event.WALL else e["j"])) for e in found] == [
         event[1:] for event in expected
     ]
     # chaos multiplies rounding by some ten a hit
@@ -115,7 +116,9 @@ def test_event_times_are_those_of_fifty_digit_arithmetic(response):
         for _ in range(30):
             exact.step()
     found = simulation.events
-    assert [(e["kind"], e["i"], e["wall"] if e["kind"] else e["j"]) for e in found] == [e[1:] for e in exact.events]
+    assert [(e["kind"], e["i"], e["wall"] if e["kind"] == Event.WALL else e["j"]) for e in found] == [
+        e[1:] for e in exact.events
+    ]
     errors = [abs(float(Decimal(float(e["time"])) - x[0])) for e, x in zip(found, exact.events, strict=True)]
     assert max(errors) <= 1e-12
     assert np.allclose(simulation.velocities, np.array(exact.v, dtype=float), atol=1e-11)

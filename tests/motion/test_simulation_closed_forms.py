@@ -5,6 +5,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
+from harness.motion.predictive.codes import Event
 from harness.motion.predictive.simulation import Simulation
 
 FAR = [1e3, 1e3, 1e3]
@@ -33,7 +34,7 @@ def fly(
 
 def pairs(simulation):
     events = simulation.events
-    return events[events["kind"] == 0]
+    return events[events["kind"] == Event.PAIR]
 
 
 def along_x(xs):

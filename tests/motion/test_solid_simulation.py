@@ -8,6 +8,7 @@ import pytest
 import trimesh
 from scipy.optimize import brentq
 
+from harness.motion.predictive.codes import Event
 from harness.motion.predictive.simulation import Simulation
 from harness.motion.predictive.solid_simulation import SolidSimulation
 from harness.motion.predictive.solids import Form, needs_its_surface
@@ -57,7 +58,7 @@ def crowd(mesh, count, half, seed, shape="hull", spin=2.0, ratio=1.0):
 
 
 def sequence(events):
-    return [(int(e["kind"]), int(e["i"]), int(e["wall"] if e["kind"] else e["j"])) for e in events]
+    return [(int(e["kind"]), int(e["i"]), int(e["wall"] if e["kind"] == Event.WALL else e["j"])) for e in events]
 
 
 def until_too_close_to_call(events, tolerance=1e-6):
@@ -71,7 +72,7 @@ def test_cubes_meet_face_to_face_and_edge_to_face_on_time():
     for turn, reach in (((1, 0, 0, 0), WIDTH), (slanted, WIDTH * (1 + np.sqrt(2)) / 2)):
         scene = cubes([(0, 0, 0), (5, 0, 0)], [(0.5, 0, 0), (-1, 0, 0)], quaternions=[(1, 0, 0, 0), turn])
         events = fly(scene, 10.0, tolerance=1e-12).events
-        assert sequence(events) == [(0, 0, 1)]
+        assert sequence(events) == [(Event.PAIR, 0, 1)]
         assert events["time"][0] == pytest.approx((5 - reach) / 1.5, rel=1e-11)
 
 
@@ -175,7 +176,7 @@ def test_without_a_response_every_onset_is_found_and_no_other(name, shape):
     simulation = fly(scene, until, "none", tolerance=1e-8)
     exact = simulation.events
     trace = flights.fly(scene, "grid", frames_of(round(until / dt), dt, "none")).trace
-    pairs = exact[exact["kind"] == 0]
+    pairs = exact[exact["kind"] == Event.PAIR]
     seen = sorted((*trace.bodies[k], trace.times[k]) for k in np.flatnonzero(trace.walls < 0))
     onsets = sorted(zip(pairs["i"], pairs["j"], pairs["time"], strict=True))
     assert [event[:2] for event in seen] == [event[:2] for event in onsets]

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.narrowphase.simplex import (
+    depth_of_origin,
     nearest_on_segment,
     nearest_on_tetrahedron,
     nearest_on_triangle,
-    room_around_origin,
     weights,
 )
 
@@ -43,14 +43,14 @@ def test_a_tetrahedron_has_the_origin_inside_or_a_nearest_face(seed, flatness, o
     if (normal @ -a) * (normal @ (d - a)) <= 0.0:
         return
     point, _, kept = nearest_on_tetrahedron(*map(tuple, corners))
-    room = room_around_origin(*map(tuple, corners))
+    radius = depth_of_origin(*map(tuple, corners))
     if kept == 15:
         inside = np.linalg.solve(np.vstack([corners.T, np.ones(4)]), [0, 0, 0, 1])
         assert (inside >= -1e-9).all()
-        assert room >= 0.0
+        assert radius >= 0.0
         normals = [np.cross(q - p, r - p) for p, q, r in ((a, b, c), (a, b, d), (b, c, d), (a, c, d))]
         heights = [abs(n @ p) / np.linalg.norm(n) for n, p in zip(normals, (a, a, b, a), strict=True)]
-        assert room == pytest.approx(min(heights), rel=1e-6, abs=1e-12)
+        assert radius == pytest.approx(min(heights), rel=1e-6, abs=1e-12)
     else:
-        assert room <= 1e-12
+        assert radius <= 1e-12
         assert ((corners - np.array(point)) @ np.array(point) >= -1e-12).all()

@@ -35,3 +35,28 @@ def test_it_is_said_how_many_pairs_the_library_was_asked_about(report_of):
 def test_what_was_not_counted_is_not_said(report_of):
     said = findings_of(report_of(swept=METHODS, base={"shape": "hull"}))
     assert "kernels of this program" not in said
+
+
+def tied(parameters, repeat, metrics):
+    """Two methods of which the second is now as fast as the first, now four times as slow."""
+    slow = 4.0 if parameters["algorithm"] == "tree" and repeat > 1 else 1.0
+    metrics["pair_seconds"] = (8.0 if parameters["algorithm"] == "native" else slow) * (1 + 1e-3 * repeat)
+
+
+def test_medians_that_differ_are_not_about_the_same_though_they_cannot_be_told_apart(report_of):
+    said = findings_of(report_of(swept=METHODS, base={"shape": "hull", "count": 10}, fate=tied)).replace("\u00a0", " ")
+    assert "cannot be told apart in object/object test time, the lowest, with medians from 1.00 s to 4.01 s" in said
+    assert "ahead of pybullet" in said
+
+
+def unwalled(parameters, repeat, metrics):
+    metrics["box_seconds"] = 0.0
+
+
+def test_a_clock_that_stands_still_is_neither_told_nor_drawn(report_of):
+    for swept in (METHODS, {}):
+        page = report_of(swept=swept, base={"shape": "hull", "count": 10}, fate=unwalled)["pages/x/index.html"]
+        told = page.partition('id="results"')[0].replace("\u00a0", " ")
+        assert "object/object test time" in told
+        assert "object/wall test time" not in told
+        assert "box_seconds" not in told

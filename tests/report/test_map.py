@@ -1,4 +1,4 @@
-"""The map: each field has the fastest method that is right there, and is in doubt where that cannot be told."""
+"""The map: each cell has the fastest method that is right there, and is in doubt where that cannot be told."""
 
 import re
 from io import BytesIO
@@ -8,7 +8,7 @@ from PIL import Image
 
 from harness.report.drawing import palette
 from harness.report.map.answers import answers
-from harness.report.map.fields import maps_of
+from harness.report.map.cells import maps_of
 from harness.report.results import Results
 from harness.report.site import render
 from harness.report.styles import letter, style_of
@@ -53,7 +53,7 @@ def maps(tmp_path):
 
 def test_a_field_is_won_by_the_fastest_that_is_right_there_and_is_in_doubt_where_two_are_as_fast(maps):
     [made] = maps()
-    said = {(answer.field.x, answer.field.y): (answer.method, bool(answer.field.doubt)) for answer in answers(made)}
+    said = {(answer.cell.x, answer.cell.y): (answer.method, bool(answer.cell.doubt)) for answer in answers(made)}
     assert said[10, 0.2] == ("own grid", False)
     assert said[100, 0.05] == ("own grid", False)
     assert said[100, 0.2] == ("fcl brute-force", False)  # the other is fast, and wrong
@@ -62,7 +62,7 @@ def test_a_field_is_won_by_the_fastest_that_is_right_there_and_is_in_doubt_where
 
 def test_with_too_few_repeats_every_field_with_a_rival_is_in_doubt_and_says_why(maps):
     [made] = maps(repeats=2)
-    rivals = [answer for answer in answers(made) if len(answer.field.ranked) > 1]
+    rivals = [answer for answer in answers(made) if len(answer.cell.ranked) > 1]
     assert len(rivals) == 3
     assert all("too few repeats to rank" in answer.sure for answer in rivals)
 
@@ -71,8 +71,8 @@ def test_an_accuracy_is_reached_by_the_longest_step_that_suffices(maps):
     coarse, fine = maps(dt=[1 / 60, 1 / 1000])
     assert (coarse.accuracy, fine.accuracy) == (1 / 60, 1 / 1000)
     for made in (coarse, fine):
-        for field in made.fields:
-            assert {entry.point.parameters["dt"] for entry in field.ranked} == {made.accuracy}
+        for cell in made.cells:
+            assert {entry.point.parameters["dt"] for entry in cell.ranked} == {made.accuracy}
     assert "motion: {dt: 0.001}" in answers(fine)[0].yaml
 
 
@@ -108,5 +108,5 @@ def test_figures_can_be_had_as_pdf_and_png_with_the_same_bytes_every_time(tmp_pa
 def test_a_figure_in_another_format_has_the_light_colours(tmp_path):
     image = dict(render(write(tmp_path / "results.db", [invented()]), ("png",)))["map.png"]
     colours = {pixel for _, pixel in Image.open(BytesIO(image)).convert("RGB").getcolors(2**24)}
-    assert tuple(bytes.fromhex(palette.LIGHT[1][1:])) in colours  # of the grid, around its fields
+    assert tuple(bytes.fromhex(palette.LIGHT[1][1:])) in colours  # of the grid, around its cells
     assert (255, 255, 255) in colours

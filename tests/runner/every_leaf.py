@@ -23,7 +23,7 @@ import yaml
 
 from harness.errors import InputError
 from harness.experiment.load import load_text
-from harness.measure.verdicts import judge
+from harness.measure.verdicts import verdict_on
 from harness.runner.point import plan_of
 from harness.runner.scene_of_point import build_scene
 from harness.runner.servers import Servers, files_of
@@ -137,7 +137,7 @@ def verdict(experiment: dict[str, Any], table: pd.DataFrame) -> tuple[str, str |
     for kind, rows in (("expectation", loaded.expect), ("claim", loaded.claims)):
         for row in rows:
             try:
-                judge(row, table, loaded.swept, kind)
+                verdict_on(row, table, loaded.swept, kind)
             except Exception as error:
                 return "no verdict", f"{type(error).__name__}: {error}"
     return "judged", None

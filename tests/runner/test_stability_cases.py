@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from harness.errors import InputError
-from harness.measure.verdicts import judge
+from harness.measure.verdicts import verdict_on
 from harness.runner.execute import execute
 from harness.runner.key import point_key
 from harness.runner.preparation import prepare
@@ -59,7 +59,7 @@ def test_all_that_a_case_expects_holds(name):
     asked = {"grid"} if name.startswith("query-") else {"grid", "predictive"}  # which tells hits alone
     assert set(runs["algorithm"]) >= asked
     for row in experiment.expect:
-        verdict = judge(row, runs, experiment.swept, "expectation")
+        verdict = verdict_on(row, runs, experiment.swept, "expectation")
         assert verdict.verdict == "holds", verdict.statement
 
 
@@ -69,6 +69,6 @@ def test_stepped_runs_fall_short_where_they_are_known_to():
     for name in ("far-away", "grazing-between-frames", "rattling", "tight-box"):
         experiment, runs = flown(name)
         for row in experiment.claims:
-            groups = judge(row, runs, experiment.swept, "claim").groups
+            groups = verdict_on(row, runs, experiment.swept, "claim").groups
             held = {group.parameters["algorithm"] for group in groups if group.verdict == "holds"}
             assert held == {"predictive"}, name

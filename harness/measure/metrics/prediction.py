@@ -14,7 +14,7 @@ METRICS = (
         "guarded_hits", "inelastic hits answered elastically, as part of a lasting contact (TC model)", tabulated=False
     ),
     counter(
-        "stalled_events", "times a body was made to wait, because too many events came in no time", tabulated=False
+        "stalled_events", "times a body was made to wait, because too many events came in one burst", tabulated=False
     ),
     counter("advancement_steps", "steps of conservative advancement in all searches for a contact", tabulated=False),
     counter("predictions_per_event", "predictions / events", tabulated=False),

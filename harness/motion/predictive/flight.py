@@ -42,8 +42,8 @@ def populate(world: World, placed: bool) -> None:
     tournament.rebuild(world.queue, world.spheres.schedule)
 
 
-def event_loop(crowded: bool) -> Callable[[World, float, int], Stop]:
-    """The event loop, for so many spheres that the event queue is `crowded` out of the caches, or for fewer.
+def event_loop(deep: bool) -> Callable[[World, float, int], Stop]:
+    """The event loop, for so many spheres that the event queue is out of the caches (`deep`), or for fewer.
 
     Each is compiled by itself, as code for prefetching that did not run cost small numbers of spheres 2 to 9 % of the
     rate.
@@ -79,15 +79,15 @@ def event_loop(crowded: bool) -> Callable[[World, float, int], Stop]:
                     predict(world, who, now, after)
                     schedule_next(world, who, now)
                     if rules.prefetching:
-                        prefetch_ahead(world, who, crowded)
+                        prefetch_ahead(world, who, deep)
                     else:
                         prefetch_next(world, who)
 
     return fly
 
 
-fly = event_loop(crowded=False)
-fly_crowded = event_loop(crowded=True)
+fly = event_loop(deep=False)
+fly_prefetching_deep = event_loop(deep=True)
 
 
 @step

@@ -5,9 +5,9 @@ from __future__ import annotations
 from harness.kernel import step
 from harness.motion.predictive.burst import note_hit
 from harness.motion.predictive.clock import absolute, advance
-from harness.motion.predictive.codes import ResponseCode
+from harness.motion.predictive.codes import Event, ResponseCode
 from harness.motion.predictive.response import answer_elastic, answer_reflect
-from harness.motion.predictive.state import NOBODY, PAIR_EVENT, WALL_EVENT, World
+from harness.motion.predictive.state import NOBODY, World
 from harness.motion.predictive.sums import add
 from harness.narrowphase.spheres import approaches
 
@@ -57,7 +57,7 @@ def hit_pair(world: World, k: int, p: int, now: float) -> bool:
     note_hit(world, j, now, rules.burst_window)
     counts.pair_hits += 1
     note_after(world, i, j)
-    record(world, now, PAIR_EVENT, schedule[i].label, schedule[j].label, -1)
+    record(world, now, Event.PAIR, schedule[i].label, schedule[j].label, -1)
     return True
 
 
@@ -88,7 +88,7 @@ def note_onset(world: World, k: int, p: int, now: float) -> None:
         second = p if first == k else k
         note_before(world, first, second, now)
         note_after(world, first, second)
-        record(world, now, PAIR_EVENT, i, j, -1)
+        record(world, now, Event.PAIR, i, j, -1)
 
 
 @step
@@ -123,7 +123,7 @@ def reflect_from_wall(world: World, k: int, face: int, now: float) -> None:
     add(totals.sums[0].wall_virial, impulse * motion.position[axis] * (1.0 if face % 2 == 1 else -1.0))
     note_hit(world, k, now, 0.0)
     totals.counts[0].box_hits += 1
-    record(world, now, WALL_EVENT, world.spheres.schedule[k].label, -1, face)
+    record(world, now, Event.WALL, world.spheres.schedule[k].label, -1, face)
 
 
 @step

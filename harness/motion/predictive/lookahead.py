@@ -34,7 +34,7 @@ def prefetch_next(world: World, k: int) -> None:
 
 
 @step
-def prefetch_ahead(world: World, k: int, crowded: bool) -> None:
+def prefetch_ahead(world: World, k: int, deep: bool) -> None:
     """After an update from sphere k's leaf: prefetch for the winners on its way up, the more the sooner they are due.
 
     The winner at a node of level m is due within the next 2^m events or so.
@@ -44,10 +44,10 @@ def prefetch_ahead(world: World, k: int, crowded: bool) -> None:
     soon = int(queue.winners[leaf >> max(world.rules.depth - SPHERE_LEVEL, 0)])
     prefetch(spheres.motions, soon)
     prefetch(spheres.schedule, soon)
-    if crowded:
+    if deep:
         prefetch_path(queue, queue.time_bits.size // 2 + soon)
     prefetch_candidates(world, int(queue.winners[leaf >> max(world.rules.depth - AROUND_LEVEL, 0)]))
-    prefetch_neighbours(world, int(queue.winners[leaf >> max(world.rules.depth - NEIGHBOURS_LEVEL, 0)]), crowded)
+    prefetch_neighbours(world, int(queue.winners[leaf >> max(world.rules.depth - NEIGHBOURS_LEVEL, 0)]), deep)
 
 
 @step
@@ -64,13 +64,13 @@ def prefetch_path(queue: EventQueue, leaf: int) -> None:
 
 
 @step
-def prefetch_neighbours(world: World, k: int, crowded: bool) -> None:
+def prefetch_neighbours(world: World, k: int, deep: bool) -> None:
     """Prefetch the motions of sphere k's neighbours."""
     motions, cells = world.spheres.motions, world.cells
     if world.rules.neighbours == NeighbourSearch.LISTS:
         prefetch_members(world, k)
         partner = int(world.spheres.schedule[k].partner)
-        if crowded and partner >= 0:
+        if deep and partner >= 0:
             prefetch_members(world, partner)
     else:
         grid = cells.grids[world.spheres.schedule[k].size_class]

@@ -22,7 +22,7 @@ SKIN = 0.65
 # times the rate at 10^5, but .8 times while the cells are in the cache; and from the last number on the event queue and
 # the neighbours of partners too: once more 1.1 to 1.4 times.
 PREFETCH_COUNT = {NeighbourSearch.CELLS: 25_000, NeighbourSearch.LISTS: 4_000}
-CROWDED_COUNT = 30_000
+DEEP_PREFETCH_COUNT = 30_000
 # Inelastic bodies can collapse: they hit each other without end in a finite time, three on a line for restitutions
 # below 7 - 4 sqrt 3 = .072 (McNamara & Young 1992). Three models are in use. `none` lets it happen, and never gets past
 # that time. A cutoff speed makes all slower hits elastic, a collapse or not. `TC` makes hits elastic that come within a

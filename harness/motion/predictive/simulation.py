@@ -11,15 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from harness.arrays import Pairs
 from harness.errors import InputError
 from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
-from harness.motion.predictive.flight import fly, fly_crowded, populate
+from harness.motion.predictive.flight import fly, fly_prefetching_deep, populate
 from harness.motion.predictive.grids import empty_grids, size_classes
 from harness.motion.predictive.initial import check
 from harness.motion.predictive.order import labelled, positions_at, reorder
 from harness.motion.predictive.preparation import empty_lists, prepare
-from harness.motion.predictive.rules import CROWDED_COUNT, RESPONSES, SEARCHES, choose_search, make_rules
-from harness.motion.predictive.state import EVENT, PAIR_EVENT, WALL_EVENT, Floats
-
-__all__ = ["EVENT", "PAIR_EVENT", "WALL_EVENT", "Simulation"]
+from harness.motion.predictive.rules import DEEP_PREFETCH_COUNT, RESPONSES, SEARCHES, choose_search, make_rules
+from harness.motion.predictive.state import Floats
 
 
 class Simulation:
@@ -234,7 +232,7 @@ class Simulation:
         return chunk
 
     def _fly(self, until: float, budget: int) -> Stop:
-        return (fly if len(self) < CROWDED_COUNT else fly_crowded)(self._world, until, budget)
+        return (fly if len(self) < DEEP_PREFETCH_COUNT else fly_prefetching_deep)(self._world, until, budget)
 
     def _make_room(self) -> None:
         """Go on with cells from this moment: more spheres are on top of each other than a neighbour list holds."""

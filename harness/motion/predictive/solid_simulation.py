@@ -68,8 +68,8 @@ class SolidSimulation(Simulation):
         )
         order = self._world.spheres.schedule["label"]
         body = solids(form, bodies, order.astype(np.int64), tolerance)
-        room = WINDOWS * len(bodies) + 64
-        self._solid = SolidWorld(self._world, body, empty_windows(len(bodies), room))
+        capacity = WINDOWS * len(bodies) + 64
+        self._solid = SolidWorld(self._world, body, empty_windows(len(bodies), capacity))
 
     def _fly(self, until: float, budget: int) -> Stop:
         return fly_solids(self._solid, until, budget)

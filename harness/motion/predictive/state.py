@@ -113,9 +113,8 @@ CONTACT = np.dtype([("last", np.float64), ("row", np.int64)], align=True)
 # The onset of touching that was recorded last (response none).
 ONSET = np.dtype([("time", np.float64), ("i", np.int64), ("j", np.int64)], align=True)
 
-# A recorded event: j is -1 at a wall, wall is -1 between a pair.
+# A recorded event: kind is Event.PAIR or Event.WALL, j is -1 at a wall, wall is -1 between a pair.
 EVENT = np.dtype([("time", "f8"), ("kind", "i1"), ("i", "i4"), ("j", "i4"), ("wall", "i1")])
-PAIR_EVENT, WALL_EVENT = 0, 1
 
 # The state of the one or two spheres of a recorded event, copied as it is: a place is that of the sphere's own time.
 EVENT_STATE = np.dtype(

@@ -66,14 +66,14 @@ class Windows(NamedTuple):
     walls: Records
 
 
-def empty_windows(bodies: int, room: int) -> Windows:
-    """No windows yet, room for so many."""
-    pool = np.zeros(room, dtype=WINDOW)
-    pool["next"] = np.append(np.arange(1, room), NOBODY)
-    warm_starts = np.zeros(room, dtype=WARM_START)
+def empty_windows(bodies: int, capacity: int) -> Windows:
+    """No windows yet, memory for so many."""
+    pool = np.zeros(capacity, dtype=WINDOW)
+    pool["next"] = np.append(np.arange(1, capacity), NOBODY)
+    warm_starts = np.zeros(capacity, dtype=WARM_START)
     warm_starts["hulls"], warm_starts["surfaces"] = -1, -1
     free = np.zeros(1, dtype=FREE)
-    free["count"] = room
+    free["count"] = capacity
     walls = np.zeros((bodies, 3), dtype=WALL_WINDOW)
     walls["time"] = np.inf
     return Windows(
@@ -88,13 +88,13 @@ def empty_windows(bodies: int, room: int) -> Windows:
 
 def enlarged(full: Windows) -> Windows:
     """The same windows and as many free ones again."""
-    room = len(full.pool)
-    larger = empty_windows(len(full.heads), 2 * room)
-    larger.pool[:room] = full.pool
-    larger.warm_starts[:room] = full.warm_starts
+    capacity = len(full.pool)
+    larger = empty_windows(len(full.heads), 2 * capacity)
+    larger.pool[:capacity] = full.pool
+    larger.warm_starts[:capacity] = full.warm_starts
     larger.pool["next"][-1] = full.free["first"][0]
-    larger.free["first"] = room
-    larger.free["count"] = full.free["count"] + room
+    larger.free["first"] = capacity
+    larger.free["count"] = full.free["count"] + capacity
     return larger._replace(heads=full.heads, held=full.held, walls=full.walls)
 
 

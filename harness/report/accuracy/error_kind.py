@@ -39,14 +39,36 @@ class ErrorKind:
 
 
 TIMES = ErrorKind(
-    "time_error", "time_error_95", "s", "median", "95th percentile", "the times of hits", "hits", "missed_hits",
-    "extra_hits", "reference_hits", "reference_error", (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6), 1e-4,
-)  # fmt: skip
+    metric="time_error",
+    tail="time_error_95",
+    unit="s",
+    typical="median",
+    tail_title="95th percentile",
+    of="the times of hits",
+    things="hits",
+    missed="missed_hits",
+    extra="extra_hits",
+    known="reference_hits",
+    reference="reference_error",
+    targets=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
+    preferred=1e-4,
+)
 # most gaps are exact or 0, so that a median says nothing
 GAPS = ErrorKind(
-    "gap_error_most", "witness_error", "m", "largest", "Nearest points", "gaps", "pairs", "missed_pairs", "extra_pairs",
-    "reference_pairs", "reference_gap_error", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12), 1e-6,
-)  # fmt: skip
+    metric="gap_error_most",
+    tail="witness_error",
+    unit="m",
+    typical="largest",
+    tail_title="Nearest points",
+    of="gaps",
+    things="pairs",
+    missed="missed_pairs",
+    extra="extra_pairs",
+    known="reference_pairs",
+    reference="reference_gap_error",
+    targets=(1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
+    preferred=1e-6,
+)
 
 
 def error_kind(parameters: Mapping[str, Any]) -> ErrorKind:

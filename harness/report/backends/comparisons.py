@@ -52,6 +52,15 @@ class Comparisons:
         ]
 
     @cached_property
+    def findings(self) -> dict[str, list[str]]:
+        """By method, what else is wrong with it: what it claims, or verdicts that do not depend on the pose alone."""
+        found: dict[str, dict[str, None]] = {}
+        for record in self.records:
+            for row in record.document.get("findings") or ():
+                found.setdefault(row["wrong"], {})[row["certificate"]["reason"]] = None
+        return {name: list(reasons) for name, reasons in sorted(found.items())}
+
+    @cached_property
     def unsupported(self) -> list[str]:
         """What could not be compared, and why."""
         lines = [line for record in self.records for line in record.document["unsupported"]]

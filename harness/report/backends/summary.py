@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from markupsafe import Markup
 
 from harness.report.backends.comparisons import Comparisons
@@ -15,20 +17,21 @@ def summary(compared: Comparisons) -> list[Markup]:
     undecided = sum(tally["undecided"] for tally in compared.pairs)
     checked = [row for record in compared.records for row in record.document["checked"]]
     judged, contradicted = sum(row["verdicts"] for row in checked), sum(row["contradicted"] for row in checked)
-    crashed = sum(case["certificate"]["kind"] == "crashed" for case in compared.cases)
     found = [
         Markup(
             "{} of two backends on the same poses: <strong>{}</strong> really disagree, {} lie inside a band."
         ).format(plural(verdicts, "verdict"), number(real) if real else "none", number(undecided))
     ]
-    blamed: dict[str, int] = {}
+    blamed, crashed = Counter[str](), Counter[str]()
     for case in compared.cases:
-        if case["certificate"]["kind"] != "crashed":
-            blamed[case["wrong"]] = blamed.get(case["wrong"], 0) + 1
+        (crashed if case["certificate"]["kind"] == "crashed" else blamed)[case["wrong"]] += 1
     for name, count in sorted(blamed.items()):
         found.append(Markup("<strong>{}</strong> was proven wrong {}.").format(name, plural(count, "time")))
-    if crashed:
-        found.append(Markup("A backend crashed or hung at {}.").format(plural(crashed, "pose")))
+    for name, reasons in compared.findings.items():
+        more = f", and {plural(len(reasons) - 1, 'finding')} like it" if len(reasons) > 1 else ""
+        found.append(Markup("<strong>{}</strong> is wrong: {}{}.").format(name, reasons[0], more))
+    for name, count in sorted(crashed.items()):
+        found.append(Markup("<strong>{}</strong> crashed, hung or raised at {}.").format(name, plural(count, "pose")))
     both = f"{number(contradicted)} of them are wrong, both backends alike" if contradicted else "all of them are right"
     if judged:
         found.append(

@@ -116,8 +116,8 @@ def _panel(canvas: Canvas, panel: Panel, frame: Frame, form: Form, labels: bool)
         return
     canvas.text((frame.left + frame.right) / 2, frame.bottom - 42, panel.x_label, horizontal="center")
     if panel.title:
-        room = (frame.right - frame.left) / CHARACTER
-        canvas.text(frame.left, frame.top + 13, shorten(panel.title, room))
+        letters = (frame.right - frame.left) / CHARACTER
+        canvas.text(frame.left, frame.top + 13, shorten(panel.title, letters))
         middle = (frame.bottom + frame.top) / 2
         canvas.text(frame.left - _LEFT + 9, middle, panel.y_label, horizontal="center", vertical="center", turned=True)
     else:
@@ -183,16 +183,16 @@ def _y_range(panel: Panel) -> tuple[float, float]:
 
 
 def _x_texts(panel: Panel, frame: Frame, form: Form) -> list[tuple[float, str]]:
-    """Ticks at the measured values themselves, as many as have room."""
+    """Ticks at the measured values themselves, as many as fit."""
     character = CHARACTER * (0.85 if form == "card" else 1.0)
     if panel.categories:
-        room = (frame.right - frame.left) / len(panel.categories) / character
-        step = max(1, math.ceil(7 / room))
+        letters = (frame.right - frame.left) / len(panel.categories) / character
+        step = max(1, math.ceil(7 / letters))
         named = enumerate(panel.categories)
-        return [(float(place), shorten(text, room * step - 1)) for place, text in named if place % step == 0]
+        return [(float(place), shorten(text, letters * step - 1)) for place, text in named if place % step == 0]
     if panel.rounded:
-        room = int((frame.right - frame.left) / (9 * character))
-        return [(value, tick_text(value)) for value in round_numbers(frame.x_range, panel.logarithmic, room)]
+        letters = int((frame.right - frame.left) / (9 * character))
+        return [(value, tick_text(value)) for value in round_numbers(frame.x_range, panel.logarithmic, letters)]
     kept: list[tuple[float, str]] = []
     edge = -math.inf
     for value in sorted({value for line in panel.lines for value in line.x}):

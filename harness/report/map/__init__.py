@@ -1,1 +1,1 @@
-"""A map of who is fastest where: fields over two leaves, each won by a method or by none."""
+"""A map of who is fastest where: cells over two leaves, each won by a method or by none."""

@@ -1,4 +1,4 @@
-"""What a map says of each of its fields, in words: for a table, for the form beside the map and for a pointer."""
+"""What a map says of each of its cells, in words: for a table, for the form beside the map and for a pointer."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.report.lines import interval_text
-from harness.report.map.fields import Field, MethodMap, method_of, resolution_of
+from harness.report.map.cells import Cell, MethodMap, method_of, resolution_of
 from harness.report.quantity import leaf_text, number, scale
 from harness.report.ranking import Ranked
 from harness.report.styles import style_of
@@ -16,39 +16,39 @@ from harness.vocabulary import MethodName
 
 @dataclass(frozen=True)
 class Answer:
-    """One field in words.
+    """One cell in words.
 
     Parameters
     ----------
     x, y : as they are written
     method, cost, sure, second : the fastest, what it costs, how sure that is, and the runner-up with its ratio
+    style, letter : of the method, as `harness.report.styles` has them
     yaml : the lines of an experiment that choose it
-    href : the page of the experiment
     """
 
     where: MethodMap
-    field: Field
+    cell: Cell
     x: str
     y: str
-    method: str
-    style: int | None
-    letter: str
-    cost: str
-    sure: str
-    second: str
-    yaml: str
+    method: str = "nobody"
+    style: int | None = None
+    letter: str = ""
+    cost: str = ""
+    sure: str = ""
+    second: str = ""
+    yaml: str = ""
 
     @property
     def sentence(self) -> str:
-        """All of it in a line, for a pointer over the field."""
+        """All of it in a line, for a pointer over the cell."""
         parts = [f"{self.x}, {self.y}: {self.method}", self.cost, self.second, self.sure]
         return "; ".join(part for part in parts if part)
 
 
 def answers(made: MethodMap) -> list[Answer]:
-    """Of every field of a map, row by row."""
-    fields = sorted(made.fields, key=lambda field: (made.ys.index(field.y), made.xs.index(field.x)))
-    return [_answer(made, field) for field in fields]
+    """Of every cell of a map, row by row."""
+    cells = sorted(made.cells, key=lambda cell: (made.ys.index(cell.y), made.xs.index(cell.x)))
+    return [_answer(made, cell) for cell in cells]
 
 
 def place_text(leaf: str, value: Any) -> str:
@@ -58,24 +58,24 @@ def place_text(leaf: str, value: Any) -> str:
     return f"{leaf} {leaf_text(value)}"
 
 
-def _answer(made: MethodMap, field: Field) -> Answer:
-    x, y = place_text(made.x_leaf, field.x), place_text(made.y_leaf, field.y)
-    best = field.best
+def _answer(made: MethodMap, cell: Cell) -> Answer:
+    x, y = place_text(made.x_leaf, cell.x), place_text(made.y_leaf, cell.y)
+    best = cell.best
     if best is None:
-        return Answer(made, field, x, y, "nobody", None, "", "", field.doubt, "", "")
+        return Answer(made, cell, x, y, sure=cell.doubt)
     method = method_of(best.series)
     return Answer(
         made,
-        field,
+        cell,
         x,
         y,
-        method.label,
-        style_of(method),
-        made.letters[method],
-        _cost(made, best),
-        _sure(field),
-        _second(field),
-        _yaml(method, resolution_of(best.series)),
+        method=method.label,
+        style=style_of(method),
+        letter=made.letters[method],
+        cost=_cost(made, best),
+        sure=_sure(cell),
+        second=_second(cell),
+        yaml=_yaml(method, resolution_of(best.series)),
     )
 
 
@@ -91,17 +91,17 @@ def _cost(made: MethodMap, best: Ranked) -> str:
     return text
 
 
-def _sure(field: Field) -> str:
-    if field.doubt:
-        return f"in doubt: {field.doubt}"
-    if len(field.ranked) == 1:
+def _sure(cell: Cell) -> str:
+    if cell.doubt:
+        return f"in doubt: {cell.doubt}"
+    if len(cell.ranked) == 1:
         return "the only one measured here that is right"
-    others = len(field.ranked) - 1
+    others = len(cell.ranked) - 1
     return f"told apart from {('the other one', 'both others')[others - 1] if others < 3 else f'all {others} others'}"
 
 
-def _second(field: Field) -> str:
-    second = field.runner_up
+def _second(cell: Cell) -> str:
+    second = cell.runner_up
     if second is None:
         return ""
     name = method_of(second.series).label

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from harness.report.drawing.field_map import Cell, Grid, draw_maps
+from harness.report.drawing.cell_map import Cell, Grid, draw_maps
 from harness.report.figure import Figure, Key
 from harness.report.map.answers import answers
-from harness.report.map.fields import MethodMap
+from harness.report.map.cells import MethodMap
 from harness.report.quantity import leaf_text
 from harness.report.words import leaf_title, metric_title
 
@@ -26,7 +26,7 @@ def map_figure(maps: Sequence[MethodMap], name: str = "map") -> Figure:
         name,
         f"The fastest method by {leaf_title(maps[0].x_leaf)} and {maps[0].y_leaf}",
         described,
-        f"Each field has the colour and the letter of the method with the least {metric} of those that are right "
+        f"Each cell has the colour and the letter of the method with the least {metric} of those that are right "
         "there. Hatched: it cannot be told from another. The table below says what each costs, and how far behind the "
         "next one is.",
         lambda form, name: draw_maps(grids, form, name),
@@ -38,11 +38,11 @@ def map_figure(maps: Sequence[MethodMap], name: str = "map") -> Figure:
 def _grid(made: MethodMap) -> Grid:
     cells = tuple(
         Cell(
-            made.xs.index(answer.field.x),
-            made.ys.index(answer.field.y),
+            made.xs.index(answer.cell.x),
+            made.ys.index(answer.cell.y),
             answer.style,
             answer.letter,
-            bool(answer.field.doubt),
+            bool(answer.cell.doubt),
             answer.sentence,
         )
         for answer in answers(made)

@@ -52,9 +52,9 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
     ahead = Markup("that is ")
     if len(tied) > 1:
         names = " and ".join(entry.series.label for entry in tied)
-        rank_text = "about" if len(tied) == len(ranked) else f"the {most}, about"
-        text = Markup("{}{} cannot be told apart in {}, {} <strong>{}</strong>").format(
-            where, names, metric_title(metric), rank_text, value
+        rank_text = "" if len(tied) == len(ranked) else f"the {most}, "
+        text = Markup("{}{} cannot be told apart in {}, {}{}").format(
+            where, names, metric_title(metric), rank_text, _about([entry.median for entry in tied], metric)
         )
         ahead = Markup("{} is ").format(best.series.label)
     else:
@@ -72,6 +72,18 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
         ]
         text += Markup("; ") + ahead + Markup(", ").join(parts)
     return text + Markup(".")
+
+
+# Up to this ratio, medians are about the same.
+_ALIKE = 1.1
+
+
+def _about(medians: Sequence[float], metric: str) -> Markup:
+    """What several medians that cannot be told apart are: about the best of them, or from the least to the largest."""
+    least, largest = (quantity(end, metric_unit(metric)) for end in (min(medians), max(medians)))
+    if max(medians) <= _ALIKE * min(medians):
+        return Markup("about <strong>{}</strong>").format(quantity(medians[0], metric_unit(metric)))
+    return Markup("with medians from <strong>{}</strong> to <strong>{}</strong>").format(least, largest)
 
 
 def _medians(ranked: Sequence[Ranked], metric: str) -> Markup:

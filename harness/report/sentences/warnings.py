@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from markupsafe import Markup
@@ -18,93 +18,95 @@ from harness.vocabulary import MethodName
 
 
 def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
-    found = []
+    """What a reader should know before believing a page: first what is wrong, last what is merely unsure."""
+    return [
+        *_of_plans(arrangement.points),
+        *_of_correctness(arrangement.points),
+        *_of_flights(arrangement.points),
+        *_of_measuring(record, arrangement),
+    ]
+
+
+def _of_plans(points: Sequence[MeasuredPoint]) -> Iterator[Markup]:
+    """What the plans of the points warn of, such as an approximation."""
     points_of: dict[str, list[MeasuredPoint]] = {}
-    for point in arrangement.points:
+    for point in points:
         for text in dict.fromkeys(point.row.plan.get("warnings") or ()):
             points_of.setdefault(str(text), []).append(point)
-    for text, points in points_of.items():
-        whole = len(points) == len(arrangement.points)
-        whom = "every point" if whole else f"{number(len(points))} of {plural(len(arrangement.points), 'point')}"
-        found.append(Markup("<strong>{}</strong> ({}).").format(_capital(text.rstrip(".")), whom))
-    disagreeing = [point for point in arrangement.points if point.disagrees]
+    for text, warned in points_of.items():
+        whole = len(warned) == len(points)
+        whom = "every point" if whole else f"{number(len(warned))} of {plural(len(points), 'point')}"
+        yield Markup("<strong>{}</strong> ({}).").format(_capital(text.rstrip(".")), whom)
+
+
+def _of_correctness(points: Sequence[MeasuredPoint]) -> Iterator[Markup]:
+    """Whose answers are wrong, in dispute, or different each time."""
+    disagreeing = [point for point in points if point.disagrees]
     if disagreeing:
-        found.append(
-            Markup(
-                "<strong>{} hits that the reference does not, or misses some</strong>: struck through, never ranked."
-            ).format(f"{plural(len(disagreeing), 'point')} {'reports' if len(disagreeing) == 1 else 'report'}")
-        )
-    proven = dict.fromkeys(
-        MethodName.of(point.parameters).pipeline for point in arrangement.points if point.proven_wrong
-    )
+        yield Markup(
+            "<strong>{} hits that the reference does not, or misses some</strong>: struck through, never ranked."
+        ).format(f"{plural(len(disagreeing), 'point')} {'reports' if len(disagreeing) == 1 else 'report'}")
+    proven = dict.fromkeys(MethodName.of(point.parameters).pipeline for point in points if point.proven_wrong)
     if proven:
-        found.append(
-            Markup(
-                "<strong>{} proven wrong</strong> at poses of this experiment, or failed at them: never ranked."
-            ).format(f"{' and '.join(proven)} {'was' if len(proven) == 1 else 'were'}")
-        )
-    doubted = [point for point in arrangement.points if point.disputed]
+        yield Markup(
+            "<strong>{} proven wrong</strong> at poses of this experiment, or failed at them: never ranked."
+        ).format(f"{' and '.join(proven)} {'was' if len(proven) == 1 else 'were'}")
+    doubted = [point for point in points if point.disputed]
     if doubted:
         names = dict.fromkeys(MethodName.of(point.parameters).label for point in doubted)
-        found.append(
-            Markup(
-                "<strong>{} saw different hits of the same motion</strong> in {}: nobody is ranked there until it is "
-                "known who is right, which <code>harness compare</code> finds out."
-            ).format(" and ".join(names), plural(len(doubted), "point"))
-        )
-    found += _not_the_same_twice(arrangement.points)
-    escaped = [point for point in arrangement.points if (point.values("escaped") > 0).any()]
+        yield Markup(
+            "<strong>{} saw different hits of the same motion</strong> in {}: nobody is ranked there until it is "
+            "known who is right, which <code>harness compare</code> finds out."
+        ).format(" and ".join(names), plural(len(doubted), "point"))
+    yield from _not_the_same_twice(points)
+
+
+def _of_flights(points: Sequence[MeasuredPoint]) -> Iterator[Markup]:
+    """Where a motion went out of bounds."""
+    escaped = [point for point in points if (point.values("escaped") > 0).any()]
     if escaped:
-        found.append(Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point")))
-    guarded = [point for point in arrangement.points if (point.values("guarded_hits") > 0).any()]
+        yield Markup("<strong>Bodies left the box</strong> in {}.").format(plural(len(escaped), "point"))
+    guarded = [point for point in points if (point.values("guarded_hits") > 0).any()]
     if guarded:
         most = max(point.values("guarded_hits").max() for point in guarded)
-        found.append(
-            Markup(
-                "<strong>Inelastic collapse</strong> in {}: after a long row of hits in no time, up to {} more were "
-                "answered elastically (TC model), so that the flight could go on."
-            ).format(plural(len(guarded), "point"), number(most))
-        )
-    stalled = [point for point in arrangement.points if (point.values("stalled_events") > 0).any()]
+        yield Markup(
+            "<strong>Inelastic collapse</strong> in {}: after a long burst of hits, up to {} more were "
+            "answered elastically (TC model), so that the flight could go on."
+        ).format(plural(len(guarded), "point"), number(most))
+    stalled = [point for point in points if (point.values("stalled_events") > 0).any()]
     if stalled:
         most = max(point.values("stalled_events").max() for point in stalled)
-        found.append(
-            Markup(
-                "<strong>Bodies had to wait</strong> in {}, up to {} times: too many events came in no time. So it is "
-                "where bodies begin inside one another or have no room, and such a motion is ill-posed: which hit "
-                "comes when, how many there are and what they cost is each method's own. So it is too where the search "
-                "for a contact is given up, and taken up again a moment later."
-            ).format(plural(len(stalled), "point"), number(most))
-        )
-    if any("timing_grade" in point.good and not point.good["timing_grade"].all() for point in arrangement.points):
-        found.append(
-            Markup(
-                "<strong>Some runs are not timing-grade</strong>: they shared a machine with other runs. "
-                "Counts are exact, times are not."
-            )
+        yield Markup(
+            "<strong>Bodies had to wait</strong> in {}, up to {} times: too many events came in one burst. So it is "
+            "where bodies begin inside one another or have no room, and such a motion is ill-posed: which hit "
+            "comes when, how many there are and what they cost is each method's own. So it is too where the search "
+            "for a contact is given up, and taken up again a moment later."
+        ).format(plural(len(stalled), "point"), number(most))
+
+
+def _of_measuring(record: ExperimentRecord, arrangement: Arrangement) -> Iterator[Markup]:
+    """What was not measured, or not on a quiet machine of its own."""
+    points = arrangement.points
+    if any("timing_grade" in point.good and not point.good["timing_grade"].all() for point in points):
+        yield Markup(
+            "<strong>Some runs are not timing-grade</strong>: they shared a machine with other runs. "
+            "Counts are exact, times are not."
         )
     asked = arrangement.metrics if (record.specification.get("report") or {}).get("y") else ()
-    unreported = [name for name in asked if not any(len(point.values(name)) for point in arrangement.points)]
-    if unreported and any(not point.good.empty for point in arrangement.points):
-        found.append(Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported)))
-    where = {machine for point in arrangement.points for machine in point.runs["machine"]}
+    unreported = [name for name in asked if not any(len(point.values(name)) for point in points)]
+    if unreported and any(not point.good.empty for point in points):
+        yield Markup("No run reports {}, which the experiment asks for.").format(", ".join(unreported))
+    where = {machine for point in points for machine in point.runs["machine"]}
     if len(where) > 1:
-        found.append(
-            Markup("<strong>Runs come from {} machines</strong>: times compare only within one.").format(len(where))
-        )
-    busy = [point for point in arrangement.points if point.elapsed_ratio > BUSY_ABOVE]
+        yield Markup("<strong>Runs come from {} machines</strong>: times compare only within one.").format(len(where))
+    busy = [point for point in points if point.elapsed_ratio > BUSY_ABOVE]
     if busy:
-        found.append(
-            Markup(
-                "The machine was busy: elapsed time is more than {} times the CPU time in {} of {}. "
-                "CPU time leads on this page."
-            ).format(f"{BUSY_ABOVE:g}", number(len(busy)), plural(len(arrangement.points), "point"))
-        )
+        yield Markup(
+            "The machine was busy: elapsed time is more than {} times the CPU time in {} of {}. "
+            "CPU time leads on this page."
+        ).format(f"{BUSY_ABOVE:g}", number(len(busy)), plural(len(points), "point"))
     if arrangement.noise == "noisy":
-        found.append(
-            Markup("Noisy: fewer than nine in ten medians are known to {}.").format(f"±{NOISY_ABOVE * 100:.0f} %")
-        )
-    return found
+        yield Markup("Noisy: fewer than nine in ten medians are known to {}.").format(f"±{NOISY_ABOVE * 100:.0f} %")
 
 
 _EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)

@@ -1,6 +1,6 @@
-// The form beside the map: it looks up the nearest measured field in the table below it, and copies what stands there.
+// The form beside the map: it looks up the nearest measured cell in the table below it, and copies what stands there.
 document.querySelectorAll("form.finder").forEach(function (form) {
-  var rows = Array.from(document.querySelectorAll("#fields tbody tr")), answer = form.querySelector(".answer");
+  var rows = Array.from(document.querySelectorAll("#cells tbody tr")), answer = form.querySelector(".answer");
   var far = function (asked, measured) {
     return asked > 0 && measured > 0 ? Math.abs(Math.log(asked / measured)) : Math.abs(asked - measured);
   };

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from harness.scene.formats import BEGINNINGS
+
 # What no reader takes, and what a person can do about it.
 OTHERS = (
     (rb"version https://git-lfs", "a pointer of Git LFS, not the mesh itself; git lfs pull brings that"),
@@ -19,19 +21,12 @@ OTHERS = (
     (rb"BLENDER", "a file of Blender, which is not read"),
     (rb"%PDF|\x89PNG|\xff\xd8\xff", "a document or a picture"),
 )
-# What a reader takes under another name.
-READ = (
-    (rb"ply[ \t]*[\r\n]", "ply"),
-    (rb"glTF[\x01\x02]\0\0\0", "glb"),
-    (rb"(?:ST)?C?N?OFF\s", "off"),
-    (rb"(?is)solid\b.{0,2000}\bfacet\s+normal\b", "stl"),
-)
 
 
 def recognised(content: bytes, form: str) -> str | None:
     """What a file is that could not be read as a format; None if it may well be of that format."""
     start = content[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
-    for pattern, name in READ:
+    for name, pattern in BEGINNINGS.items():
         if re.match(pattern, start):
             return None if name == form else f"this is a file of another format: name it .{name}"
     for pattern, what in OTHERS:

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from harness.errors import InputError
 from harness.scene.polygon_mesh import MAX_FACES, PolygonMesh
 
+# How such a file begins.
+BEGINS = rb"glTF[\x01\x02]\0\0\0"
 JSON, BINARY = b"JSON", b"BIN\0"
 TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 WHOLE = {5121, 5123, 5125}  # the types of corners
@@ -32,7 +34,7 @@ class Part(NamedTuple):
     faces: NDArray[np.int64]
 
 
-def read_glb(content: bytes) -> PolygonMesh:
+def read(content: bytes) -> PolygonMesh:
     """The triangles of a GLB file.
 
     Raises

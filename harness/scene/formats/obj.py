@@ -30,7 +30,7 @@ FEW = 32  # lines that are sooner read one by one
 TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
 
 
-def read_obj(content: bytes) -> PolygonMesh:
+def read(content: bytes) -> PolygonMesh:
     """The polygons of an OBJ file.
 
     Raises

@@ -15,6 +15,8 @@ from harness.errors import InputError
 from harness.scene.formats.text import LARGEST, as_text, floats, gathered, rows, shown, whole
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh
 
+# How such a file begins.
+BEGINS = rb"(?:ST)?C?N?OFF\s"
 # C colours, N normals, ST texture coordinates, 4 four coordinates, n a number of coordinates that the next line says
 KEYWORD = re.compile(rb"(?i:st)?[Cc]?N?(4?n?)(?i:off)")
 BINARY = re.compile(rb"\s*\w*OFF\s+BINARY", re.IGNORECASE)
@@ -23,7 +25,7 @@ ALIKE = rb"(?:[-+.0-9eE \t]+\n){1,%d}"
 MOST = 1024
 
 
-def read_off(content: bytes) -> PolygonMesh:
+def read(content: bytes) -> PolygonMesh:
     """The polygons of an OFF file.
 
     Raises

@@ -15,12 +15,14 @@ from harness.scene.formats.ply_rows import BinaryRows, Column, Rows, TextRows
 from harness.scene.formats.text import LARGEST
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh
 
+# How such a file begins.
+BEGINS = rb"ply[ \t]*[\r\n]"
 CORNERS = ("vertex_indices", "vertex_index")
 COORDINATES = ("x", "y", "z")
 MOST = {"vertex": MAX_VERTICES, "face": MAX_FACES}
 
 
-def read_ply(content: bytes) -> PolygonMesh:
+def read(content: bytes) -> PolygonMesh:
     """The polygons of a PLY file.
 
     Raises

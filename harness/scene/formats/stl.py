@@ -17,6 +17,8 @@ from harness.errors import InputError
 from harness.scene.formats.text import as_text, floats, shown, wide_encoding
 from harness.scene.polygon_mesh import MAX_FACES, PolygonMesh
 
+# How such a file begins.
+BEGINS = rb"(?is)solid\b.{0,2000}\bfacet\s+normal\b"
 HEADER = 84
 FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 KEYWORDS = {b"facet", b"outer", b"vertex", b"endloop", b"endfacet", b"solid", b"endsolid"}
@@ -30,7 +32,7 @@ BLOCK = 1_000_000  # bytes of text that are looked at together
 CONTROL = re.compile(rb"[\0-\x08\x0e-\x19]")  # bytes that no text has
 
 
-def read_stl(content: bytes) -> PolygonMesh:
+def read(content: bytes) -> PolygonMesh:
     """The triangles of an STL file; in text, a loop of more than three vertices is a polygon.
 
     Raises

@@ -1,4 +1,4 @@
-"""Which method where: the maps, a form that finds the nearest field, and all fields as a table."""
+"""Which method where: the maps, a form that finds the nearest cell, and all cells as a table."""
 
 from __future__ import annotations
 

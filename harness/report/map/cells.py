@@ -1,6 +1,6 @@
-"""The fields of a map: at each value of two leaves, who is fastest of those that are right there, and how sure that is.
+"""The cells of a map: at each value of two leaves, who is fastest of those that are right there, and how sure that is.
 
-A field is decided as everywhere in the report: what is known to be wrong, or disputed, is left out, and the fastest is
+A cell is decided as everywhere in the report: what is known to be wrong, or disputed, is left out, and the fastest is
 told from the others by paired repeats, a control and the level of the whole report. A map is of one shape, one query
 and one accuracy: how exactly a method tells the time of a hit. A stepped method tells it to its time step; of each the
 longest step that suffices is on the map.
@@ -22,8 +22,8 @@ from harness.vocabulary import MethodName
 
 
 @dataclass(frozen=True)
-class Field:
-    """One field of a map.
+class Cell:
+    """One cell of a map.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class MethodMap:
     x_leaf: str
     y_leaf: str
     metric: str
-    fields: tuple[Field, ...]
+    cells: tuple[Cell, ...]
 
     @property
     def title(self) -> str:
@@ -102,17 +102,17 @@ class MethodMap:
     @cached_property
     def xs(self) -> list[Any]:
         """Values of x, in order."""
-        return sorted({field.x for field in self.fields}, key=_numbers_first)
+        return sorted({cell.x for cell in self.cells}, key=_numbers_first)
 
     @cached_property
     def ys(self) -> list[Any]:
         """Values of y, in order."""
-        return sorted({field.y for field in self.fields}, key=_numbers_first)
+        return sorted({cell.y for cell in self.cells}, key=_numbers_first)
 
     @cached_property
     def winners(self) -> list[MethodName]:
         """The methods that are fastest somewhere."""
-        return list(dict.fromkeys(method_of(field.best.series) for field in self.fields if field.best))
+        return list(dict.fromkeys(method_of(cell.best.series) for cell in self.cells if cell.best))
 
     @cached_property
     def letters(self) -> dict[MethodName, str]:
@@ -162,7 +162,7 @@ def _maps(page: ExperimentPage) -> Iterable[MethodMap]:
                 axes["x"],
                 axes["y"],
                 arrangement.metrics[0],
-                tuple(_fields(arrangement, _sufficient(lines, accuracy), axes["y"])),
+                tuple(_cells(arrangement, _sufficient(lines, accuracy), axes["y"])),
             )
 
 
@@ -175,7 +175,7 @@ def _sufficient(lines: Sequence[Series], accuracy: float) -> list[Series]:
     return list(longest.values())
 
 
-def _fields(arrangement: Arrangement, lines: Sequence[Series], y_leaf: str) -> Iterable[Field]:
+def _cells(arrangement: Arrangement, lines: Sequence[Series], y_leaf: str) -> Iterable[Cell]:
     resolution = arrangement.resolution(arrangement.metrics[0])
     for panel in arrangement.panels:
         inside = [line for line in lines if line.panel == panel]
@@ -185,7 +185,7 @@ def _fields(arrangement: Arrangement, lines: Sequence[Series], y_leaf: str) -> I
         for x in arrangement.x_values:
             if any(line.at(x) is not None for line in inside):
                 ranked = rank(inside, x, arrangement.metrics[0], resolution)
-                yield Field(hashable(x), y, tuple(ranked))
+                yield Cell(hashable(x), y, tuple(ranked))
 
 
 def _rounded(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""How much room is left between two parts of bodies in flight, at the worst time of an interval.
+"""How far apart two parts of bodies in flight are, at the worst time of an interval.
 
 The formulas and what they rest on stand in `separation`.
 """
@@ -38,7 +38,9 @@ class PlacedPart(NamedTuple):
     half: Floats
 
 
-def room_of_discs(one: PlacedPart, other: PlacedPart, axis: Floats, way: Floats, drift: Floats, half: Floats) -> Floats:
+def clearance_of_discs(
+    one: PlacedPart, other: PlacedPart, axis: Floats, way: Floats, drift: Floats, half: Floats
+) -> Floats:
     """(k,) m: what is left between two parts along axes at the worst time of each cell."""
     turns = cross(axis, one.spin), cross(axis, other.spin)
     gap = dot(axis, way)
@@ -49,10 +51,10 @@ def room_of_discs(one: PlacedPart, other: PlacedPart, axis: Floats, way: Floats,
     bend *= 1.0 + 1e-12
     ends = []
     for time in (-half, half):
-        room = gap + time * rate
+        clearance = gap + time * rate
         for part, turn in zip((one, other), turns, strict=True):
-            room -= _reach(part, axis + time * turn)
-        ends.append(room)
+            clearance -= _reach(part, axis + time * turn)
+        ends.append(clearance)
     return np.asarray(np.minimum(*ends) - 0.5 * bend * half * half)
 
 
@@ -68,7 +70,7 @@ def placed_corners(parts: Parts, part: PlacedPart, triangles: Ints) -> Floats:
     return np.stack([part.size * turned(part.turn, corners[:, corner]) for corner in range(3)], axis=1)
 
 
-def room_of_triangles(
+def clearance_of_triangles(
     one: Floats,
     other: Floats,
     bodies: tuple[PlacedPart, PlacedPart],
@@ -76,7 +78,7 @@ def room_of_triangles(
     flight: tuple[Floats, Floats],
     half: Floats,
 ) -> Floats:
-    """(k,) m: as `room_of_discs`, between two triangles along the axis that is best in the middle of the cell.
+    """(k,) m: as `clearance_of_discs`, between two triangles along the axis that is best in the middle of the cell.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A map: fields side by side, each in the colour of a method and with its letter, hatched where it is in doubt."""
+"""A map: cells side by side, each in the colour of a method and with its letter, hatched where it is in doubt."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from harness.report.drawing.canvas import Canvas
 _LEFT, _BOTTOM, _TOP = 76.0, 46.0, 28.0
 _ROW = 42.0  # px
 _HATCH = 9.0  # px from line to line
-_GAP = 1.5  # px of the page between fields
+_GAP = 1.5  # px of the page between cells
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A field: its column and row, the style and the letter of the method, whether in doubt, and what it says."""
+    """A cell: its column and row, the style and the letter of the method, whether in doubt, and what it says."""
 
     column: int
     row: int
@@ -70,8 +70,8 @@ def _draw(canvas: Canvas, grid: Grid, left: float, bottom: float, width: float) 
         canvas.text(x - 7, y + (place + 0.5) * _ROW, text, palette.SOFT, horizontal="right", vertical="center")
     canvas.text(x + (width - _LEFT) / 2, y - 36, grid.x_label, horizontal="center")
     middle = y + len(grid.rows) * _ROW / 2
-    room = len(grid.rows) * _ROW / CHARACTER
-    canvas.text(left + 14, middle, shorten(grid.y_label, room), horizontal="center", vertical="center", turned=True)
+    letters = len(grid.rows) * _ROW / CHARACTER
+    canvas.text(left + 14, middle, shorten(grid.y_label, letters), horizontal="center", vertical="center", turned=True)
     canvas.text(x, y + len(grid.rows) * _ROW + 9, shorten(grid.title, (width - _LEFT) / CHARACTER))
 
 
@@ -82,7 +82,7 @@ def _cell(canvas: Canvas, cell: Cell, x: float, y: float, width: float) -> None:
     if cell.doubtful:
         start = -height
         while start < width:
-            # a line upwards to the right, cut off at the sides of the field
+            # a line upwards to the right, cut off at the sides of the cell
             low, high = max(0.0, -start), min(height, width - start)
             if high > low:
                 canvas.line([x + start + low, x + start + high], [y + low, y + high], palette.SOFT, 0.9, alpha=0.8)
