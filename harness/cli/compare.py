@@ -350,7 +350,8 @@ def _sentence(case: Case) -> str:
     verb = "are both" if case.both_wrong else "is"
     about = "" if asked.query == "collision" else f" about {asked.text} ({case.error})"
     i, j = case.bodies
-    state = f"overlap by {-truth.gap:.3g} m" if truth.touching else f"are {truth.gap:.3g} m apart"
+    touching = f"overlap by {-truth.gap:.3g} m" if truth.gap else "touch"  # of a gap no depth is told
+    state = touching if truth.touching else f"are {truth.gap:.3g} m apart"
     return (
         f"{case.wrong} {verb} wrong{about}: at {case.pose.name} (call {case.query_index}) bodies {i} and {j} {state}"
         f"{_told(case)}, proven by {_article(truth.certificate['kind'])}"

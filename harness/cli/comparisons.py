@@ -133,8 +133,9 @@ def _cross_check(
     digests: Mapping[str, Collection[float]],
 ) -> _Compared:
     """Hold the methods of an experiment against each other, and the timed runs of each against what it says here."""
-    asking, budget = Budget(_ASKING_AGAIN), Budget(_COMPARING)
+    asking = Budget(_ASKING_AGAIN)
     otherwise = list(timed_otherwise(experiment, meshes, digests, asking))
+    budget = Budget(_COMPARING)
     budget.left += asking.left
     known: Known = {}
     documents, lines, blamed = [], [], dict[str, None]()

@@ -315,7 +315,7 @@ class Survey:
         gap = abs(truth.gap) / float(sizes.min())
         cell.wrong += 1
         cell.deepest = max(cell.deepest, gap)
-        tolerance = one.facts.hulls_tolerance if one.facts.hulls else one.facts.tolerance
+        tolerance = one.facts.allowed_on_own_hulls if one.facts.hulls else one.facts.allowed
         if abs(truth.gap) <= band(scene, tolerance, truths.pose, _BODIES):
             return
         cell.beyond += 1

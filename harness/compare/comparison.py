@@ -10,7 +10,7 @@ from harness.compare.audit import audit_of
 from harness.compare.budget import Budget
 from harness.compare.group import Group, load
 from harness.compare.isolated import ANSWER_SECONDS, preload
-from harness.compare.outcome import LOADING, Case, Comparison, Failure
+from harness.compare.outcome import LOADING, POINTS, Case, Comparison, Failure
 from harness.compare.poses import Pose, PoseSet
 from harness.compare.query_answers import Told, make_ready
 from harness.compare.question import COLLISION, Question
@@ -213,16 +213,24 @@ class _Questions:
             answer = self._group.asked[name].told(pose)
             if isinstance(answer, str):
                 self._failures[name].append(Failure(self._pair_of(name), name, pose.name, place + 1, answer))
-                if len(self._failures[name]) >= MOST_FAILURES:
+                if sum(one.kind != POINTS for one in self._failures[name]) >= MOST_FAILURES:
                     self._exhausted[name] = (
                         f"{name} failed at {MOST_FAILURES} poses; from {pose.name} on it is not asked"
                     )
             else:
                 self._answers[name][place] = answer
+                self._note_points(name, pose, place)
         for pair in pairs:
             answers = [self._answers[name].get(place) for name in pair]
             if answers[0] is not None and answers[1] is not None:
                 self._audits[pair].add(truths, place + 1, (answers[0], answers[1]))
+
+    def _note_points(self, name: str, pose: Pose, place: int) -> None:
+        """Keep that nearest points are none, a few times: more show the same."""
+        found, failures = self._group.asked[name].misplaced, self._failures[name]
+        if found is not None and sum(one.kind == POINTS for one in failures) < MOST_FAILURES:
+            bodies, reason = found
+            failures.append(Failure(self._pair_of(name), name, pose.name, place + 1, reason, POINTS, bodies))
 
     def _ask_again(self) -> None:
         for name in self.names:

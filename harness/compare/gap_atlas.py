@@ -77,7 +77,7 @@ class GapSurvey(Survey):
             truth.check()  # before an engine is accused
             cell.wrong += 1
             cell.deepest = max(cell.deepest, float(error) / float(scene.bodies.sizes.min()))
-            tolerance = one.facts.hulls_tolerance if one.facts.hulls else one.facts.tolerance
+            tolerance = one.facts.allowed_on_own_hulls if one.facts.hulls else one.facts.allowed
             allowed = band(scene, tolerance, pose, _BODIES)
             if error > allowed:
                 cell.beyond += 1

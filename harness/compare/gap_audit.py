@@ -25,7 +25,7 @@ class GapAudit(QueryAudit):
     """The audit of two methods asked "tolerance" or "distance"."""
 
     def _apart(self, pose: Pose, pair: Pair, difference: float) -> bool:
-        return difference > max(band(self._scene, facts.tolerance, pose, pair) for facts in self._facts)
+        return difference > max(band(self._scene, facts.allowed, pose, pair) for facts in self._facts)
 
     def _asked_within(self, pose: Pose) -> float:
         return self._question.within
@@ -84,6 +84,6 @@ def differing_gap(question: Question, facts: Facts, scene: Scene, pose: Pose, an
             off = abs(truths.gap(pair, scene.shape).value - question.within)
         else:
             off = abs(one - another)
-        if one != another and off > band(scene, facts.tolerance, pose, pair):
+        if one != another and off > band(scene, facts.allowed, pose, pair):
             return pair
     return None

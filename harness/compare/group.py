@@ -11,14 +11,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-from harness.compare.isolated import BrokenError, Facts, HangingError, Isolated, UnusableError
+from harness.compare.isolated import LARGEST_TOLERANCE, BrokenError, Facts, HangingError, Isolated, UnusableError
 from harness.compare.question import COLLISION, Question
 from harness.compare.tally import NamePair
 from harness.scene.hull import Hull, hull_of, is_convex, outside
 from harness.scene.scene import Scene
-
-LARGEST_TOLERANCE = 1e-3
-"""Of a size: a backend that claims more cannot be held to anything, which is a finding of its own."""
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ class ImpactAudit(QueryAudit):
     """The audit of two methods asked "impact"."""
 
     def _apart(self, pose: Pose, pair: Pair, difference: float) -> bool:
-        allowed = max(band(self._scene, facts.tolerance, pose, pair) for facts in self._facts)
+        allowed = max(band(self._scene, facts.allowed, pose, pair) for facts in self._facts)
         return difference * _fastest(self._scene, _frame(pose), pair) > allowed
 
     def _asked_within(self, pose: Pose) -> float:
@@ -94,7 +94,7 @@ class ImpactAudit(QueryAudit):
 def differing_time(
     question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told
 ) -> Pair | None:
-    """The first pair whose time is told another by more than the tolerance, or that only one answer has.
+    """The first pair whose time is told another, and once beyond the tolerance, or that only one answer has.
 
     What touches, within the tolerance, at the start of the frame or at the time that one answer says for the first time
     and no deeper, may be told or not.
@@ -102,12 +102,16 @@ def differing_time(
     frame, truths = _frame(pose), Truths(scene, pose)
     for pair in sorted(set(answer) | set(other)):
         one, another = both((answer, other), pair)
-        allowed = band(scene, facts.tolerance, pose, pair)
+        allowed = band(scene, facts.allowed, pose, pair)
         if isinf(one) or isinf(another):
             at_end = truths.later(frame.duration).judgement(pair).gap
             if truths.judgement(pair).gap > allowed and at_end < -allowed:
                 return pair
-        elif abs(one - another) * _fastest(scene, frame, pair) > allowed:
+        elif abs(one - another) * _fastest(scene, frame, pair) > allowed and any(
+            # both may be right: while they graze, bodies are within the tolerance for a long time
+            abs(truths.later(time).judgement(pair).gap) > allowed
+            for time in (one, another)
+        ):
             return pair
     return None
 

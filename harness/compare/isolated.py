@@ -38,6 +38,11 @@ from harness.scene.ignored_pairs import without
 from harness.scene.scene import Scene, Solid
 from harness.vocabulary import MethodName, PipelineName, Query, Shape
 
+Pair = tuple[int, int]
+
+LARGEST_TOLERANCE = 1e-3
+"""Of a size: a backend that claims more cannot be held to anything, which is a finding of its own."""
+
 ANSWER_SECONDS = 10.0
 """s for an answer, by which a backend that hangs is told from a slow one."""
 # As many times as long for loading the scene.
@@ -54,6 +59,7 @@ class Facts:
     approximated : by what it replaces the shape, if it does
     hulls : those it holds in place of the scene's, by what bodies share
     hulls_tolerance : of size, where those are taken as the truth
+    asked_for : of size; the accuracy that was asked of it, which it need not exceed
     solid : it says that of two bodies one inside the other touches, though the shape is a surface
     queries : what it can be asked
     """
@@ -62,8 +68,19 @@ class Facts:
     approximated: str | None = None
     hulls: Mapping[Solid, Hull] = field(default_factory=dict)
     hulls_tolerance: float = 0.0
+    asked_for: float = 0.0
     solid: bool = False
     queries: tuple[Query, ...] = ("collision",)
+
+    @property
+    def allowed(self) -> float:
+        """Of size, by how much it may be off: as was asked, or as it declares, though no more than it may declare."""
+        return max(self.asked_for, min(self.tolerance, LARGEST_TOLERANCE))
+
+    @property
+    def allowed_on_own_hulls(self) -> float:
+        """The same, where its hulls are taken as the truth."""
+        return max(self.asked_for, min(self.hulls_tolerance, LARGEST_TOLERANCE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +145,7 @@ class Isolated:
     name, question : as given
     facts : what it declares of itself, once entered
     timeouts : how often it has not answered in time
+    misplaced : at the last pose, a pair whose nearest points are none, and what is wrong with them
 
     Raises
     ------
@@ -141,6 +159,7 @@ class Isolated:
         self.name, self.question = name, question
         self._scene, self._timeout = scene, timeout
         self.timeouts = 0
+        self.misplaced: tuple[Pair, str] | None = None
         self._child: Child | None = None
 
     def __enter__(self) -> Isolated:
@@ -165,7 +184,10 @@ class Isolated:
         if self.question.query == "collision":
             found = self.pairs(pose)
             return found if isinstance(found, str) else dict.fromkeys(map(tuple, found.tolist()), 0.0)
-        answer: Told | str = self._answer(pose)
+        reply: tuple[Told | str, tuple[Pair, str] | None] | str = self._answer(pose)
+        if isinstance(reply, str):
+            return reply
+        answer, self.misplaced = reply
         return answer
 
     def near(self, question: NearQuestion) -> float | str:
@@ -278,7 +300,7 @@ def _facts(made: Backend | QueryAnswers, scene: Scene) -> Facts:
     if not isinstance(made, QueryAnswers):
         backend = made
     elif made.library is None:
-        return Facts(tolerance)
+        return Facts(tolerance, asked_for=made.asked_for(scene.shape))
     else:
         backend = made.library
     return Facts(
@@ -289,6 +311,7 @@ def _facts(made: Backend | QueryAnswers, scene: Scene) -> Facts:
         if scene.shape == "hull"
         else {},
         own_hulls_tolerance(backend),
+        made.asked_for(scene.shape) if isinstance(made, QueryAnswers) else 0.0,
         contained_is_touching(backend, scene.shape),
         queries(backend),
     )
@@ -318,7 +341,7 @@ def _answer_queries(answers: QueryAnswers, channel: Channel) -> None:
             answer = str(error)
         except Exception as error:
             answer = _told(error)
-        channel.send(pickle.dumps(answer))
+        channel.send(pickle.dumps((answer, answers.misplaced)))
 
 
 def _answer_all(name: str, backend: Backend, channel: Channel) -> None:

@@ -73,6 +73,10 @@ TIMED = "timed runs"
 """In the place of the name of a pose: in the runs of a sweep, which were timed before."""
 
 
+POINTS = "nearest points"
+"""The kind of a failure: points that are given with a gap, and are none of the bodies or not so far apart."""
+
+
 @dataclass(frozen=True)
 class Failure:
     """A backend that crashed, hung or raised at a pose, or cannot be held to what it says; `query_index` as in `Case`.
@@ -81,7 +85,7 @@ class Failure:
     ----------
     pose : its name, or `LOADING`, or `TIMED`
     kind : "crashed"; "random" or "depends on order" for a verdict that changes; "claim" for what it says of itself;
-        "otherwise when timed" for runs that do not answer as it answers here
+        "otherwise when timed" for runs that do not answer as it answers here; or `POINTS`
     bodies : of the pair whose verdict changes
     """
 

@@ -12,7 +12,6 @@ from typing import Literal
 import numpy as np
 
 from harness.compare.certificate import Judgement
-from harness.compare.group import LARGEST_TOLERANCE
 from harness.compare.isolated import Facts
 from harness.compare.near import touching_spheres
 from harness.compare.outcome import Case, Comparison
@@ -167,7 +166,7 @@ def differing_verdict(
     """The first pair that only one answer has, and that is farther from touching than the tolerance."""
     truths = Truths(scene, pose)
     for pair in sorted(set(answer) ^ set(other)):
-        tolerance = min(facts.tolerance, LARGEST_TOLERANCE) * float(scene.bodies.sizes[list(pair)].max())
+        tolerance = facts.allowed * float(scene.bodies.sizes[list(pair)].max())
         if abs(truths.judgement(pair).gap) > tolerance:
             return pair
     return None
@@ -176,7 +175,7 @@ def differing_verdict(
 def band_of(scene: Scene, wrong: Facts, other: Facts, pose: Pose, bodies: Pair) -> float:
     """m; on a nearer contact the backend that is wrong need not be right. What the other declares excuses nothing."""
     trusted = bool(wrong.hulls) != bool(other.hulls)
-    return band(scene, wrong.hulls_tolerance if trusted and wrong.hulls else wrong.tolerance, pose, bodies)
+    return band(scene, wrong.allowed_on_own_hulls if trusted and wrong.hulls else wrong.allowed, pose, bodies)
 
 
 def band(scene: Scene, tolerance: float, pose: Pose, bodies: Pair) -> float:
@@ -184,4 +183,4 @@ def band(scene: Scene, tolerance: float, pose: Pose, bodies: Pair) -> float:
     chosen = list(bodies)
     largest = float(scene.bodies.sizes[chosen].max())
     farthest = float(np.abs(pose.positions[chosen]).max())
-    return min(tolerance, LARGEST_TOLERANCE) * largest + _ROUNDING * (farthest + largest)
+    return tolerance * largest + _ROUNDING * (farthest + largest)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import TypeAlias
 
-from harness.backends.protocol import Backend
+from harness.backends.protocol import Backend, NearPairs, approximations
 from harness.compare.poses import Frame, Pose
 from harness.compare.question import Question
+from harness.compare.witnesses import misplaced
 from harness.methods.at_poses import Queried
 from harness.methods.impact_times import FrameMotion
 from harness.methods.registry import method_of
@@ -33,7 +35,13 @@ class QueryAnswers:
     ----------
     name : MethodName, of the query
     question : how the query is set
+
+    Attributes
+    ----------
+    misplaced : at the last pose, a pair whose nearest points are none, and what is wrong with them
     """
+
+    misplaced: tuple[tuple[int, int], str] | None = None
 
     def __init__(self, name: MethodName, question: Question) -> None:
         self._name, self._asked = name, Queried(name, question.tolerance, question.within)
@@ -46,8 +54,12 @@ class QueryAnswers:
         return None if self._name.kernels else self._asked.backend
 
     def tolerance(self, shape: Shape) -> float:
-        """Of size, by how much it may be off."""
+        """Of size, by how much it may be off as is declared."""
         return self._asked.tolerance(shape)
+
+    def asked_for(self, shape: Shape) -> float:
+        """Of size, by how much it may be off because no more was asked for."""
+        return self._asked.asked_for(shape)
 
     def load(self, scene: Scene) -> None:
         """Hold a scene."""
@@ -61,9 +73,25 @@ class QueryAnswers:
             pairs, values = self._asked.impacts(motion, pose.duration)
             self._last = pose.number  # not of a frame that failed: nothing can go on from there
         else:
-            pairs, values, _ = self._asked.near(pose.positions, pose.quaternions)
+            found = self._asked.near(pose.positions, pose.quaternions)
+            self.misplaced = self._misplaced(pose, found)
+            pairs, values, _ = found
         numbers = [0.0] * len(pairs) if self._name.query == "tolerance" else values.tolist()
         return {(i, j): number for (i, j), number in zip(pairs.tolist(), numbers, strict=True)}
+
+    def _misplaced(self, pose: Pose, found: NearPairs) -> tuple[tuple[int, int], str] | None:
+        """Of a library; points of our kernels are certified where they are made."""
+        if self.library is None or self._name.query != "distance":
+            return None
+        replaced = approximations(self.library).get(self._scene.shape) is not None
+        off = misplaced(replace(self._scene, shape="hull") if replaced else self._scene, pose, found)
+        if off is None:
+            return None
+        (i, j), length = off
+        return (i, j), (
+            f"its nearest points of bodies {i} and {j} are {length:.3g} m off the bodies, or are by as much not as far "
+            "apart as it says"
+        )
 
     def _motion(self, frame: Frame) -> FrameMotion:
         follows = 0 < self._last == frame.number - 1

@@ -89,12 +89,14 @@ class Queried:
         set_accuracy(self.backend, tolerance)
 
     def tolerance(self, shape: Shape) -> float:
-        """Of size, by how much a gap, or the gap at a time of impact, may be off: as was asked for, or is declared."""
-        asked = self._tolerance if self._name.query != "tolerance" else 0.0
-        if not self._name.kernels:
-            return max(self.backend.tolerance(shape), asked)
-        # spheres are solved in closed form, and whether a gap is too wide is decided exactly
-        return _ROUNDING if shape == "sphere" else max(_ROUNDING, asked)
+        """Of size, by how much a gap, or the gap at a time of impact, may be off as its library declares."""
+        return _ROUNDING if self._name.kernels else self.backend.tolerance(shape)
+
+    def asked_for(self, shape: Shape) -> float:
+        """Of size, by how much it may be off because no more was asked for."""
+        # whether a gap is too wide is decided exactly, and our spheres are solved in closed form
+        exact = self._name.query == "tolerance" or (self._name.kernels and shape == "sphere")
+        return 0.0 if exact else self._tolerance
 
     def load(self, scene: Scene) -> None:
         """Hold a scene."""

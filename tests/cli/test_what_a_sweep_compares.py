@@ -87,7 +87,7 @@ def test_a_sweep_and_its_pages_name_who_is_wrong_and_why(name, tmp_path, monkeyp
     proven = f"{name} was proven wrong" in pages["pages/liar/index.html"]
     assert proven == (name != "honest")
     backends = pages["backends.html"].replace("\u00a0", " ")
-    told = {"raises": "raises crashed, hung or raised at 5 poses"}.get(name, SAID.get(name, "nobody"))
+    told = {"raises": "raises failed at 5 poses: RuntimeError: no"}.get(name, SAID.get(name, "nobody"))
     assert (told in backends) == (name != "honest")
     assert "fcl is wrong" not in out + backends
 

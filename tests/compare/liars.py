@@ -197,6 +197,25 @@ QUERY_LIARS = {
     """,
 }
 
+# Right gaps, and points that are none.
+POINT_LIARS = {
+    "points-elsewhere": """
+        def distances(self, positions, quaternions, within):
+            found = super().distances(positions, quaternions, within)
+            return found._replace(points=found.points + 0.1)
+    """,
+    "points-of-each-other": """
+        def distances(self, positions, quaternions, within):
+            found = super().distances(positions, quaternions, within)
+            return found._replace(points=found.points[:, ::-1])
+    """,
+    "centres-for-points": """
+        def distances(self, positions, quaternions, within):
+            found = super().distances(positions, quaternions, within)
+            return found._replace(points=positions[found.pairs])
+    """,
+}
+
 QUERY_HEAD = """
 import numpy as np
 from harness.backends.fcl import Fcl
@@ -233,7 +252,7 @@ def install(name: str, folder, monkeypatch) -> str:
     (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
     module = f"{name.replace('-', '_')}_liar"
     (metadata / "entry_points.txt").write_text(f"[harness.backends]\n{name} = {module}:Plugin\n")
-    head, lies = (HEAD, LIARS[name]) if name in LIARS else (QUERY_HEAD, QUERY_LIARS[name])
+    head, lies = (HEAD, LIARS[name]) if name in LIARS else (QUERY_HEAD, (QUERY_LIARS | POINT_LIARS)[name])
     body = textwrap.indent(textwrap.dedent(lies), 4 * " ")
     (folder / f"{module}.py").write_text(head.format(name=name) + body)
     monkeypatch.syspath_prepend(str(folder))

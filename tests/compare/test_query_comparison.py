@@ -14,7 +14,7 @@ from harness.compare.poses import Frame, PoseSet, flown
 from harness.compare.question import Question
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.compare.liars import QUERY_LIARS, install
+from tests.compare.liars import POINT_LIARS, QUERY_LIARS, install
 from tests.conftest import cube_mesh, make_bodies, random_scene, slow_beyond
 
 DISTANCE, NEAR, IMPACT = (Question(query, 0.2) for query in ("distance", "tolerance", "impact"))
@@ -45,6 +45,27 @@ def test_honest_methods_are_not_accused(question, shape):
     assert (tally.query, tally.verdicts) == (question.query, tally.poses * 66)
     assert tally.agree == tally.verdicts
     assert found.checked[0].verdicts > 0
+
+
+@pytest.mark.parametrize("query", ["distance", pytest.param("impact", marks=pytest.mark.slow)])
+def test_who_is_asked_for_little_accuracy_owes_no_more(query, liar):
+    """A tolerance of an experiment is no claim of a method's; what is off by more is found."""
+    coarse = Question(query, 0.2, tolerance=2e-2)
+    found = compare([crowd(coarse)], HONEST)
+    assert (named(found), found.tallies[0].agree) == (set(), found.tallies[0].verdicts)
+    assert compare(
+        [crowd(coarse)], ("fcl/grid", liar("loses-near-pairs" if query == "distance" else "misses-hits"))
+    ).cases
+
+
+@pytest.mark.parametrize("name", slow_beyond(POINT_LIARS))
+def test_nearest_points_that_are_none_are_a_finding_of_a_gap_that_is_right(name, liar):
+    found = compare([crowd(DISTANCE)], ("fcl/grid", liar(name)))
+    assert (named(found), found.cases, found.tallies[0].real) == ({name}, [], 0)
+    first = found.failures[0]
+    assert (first.kind, first.query_index, len(first.bodies)) == ("nearest points", 1, 2)
+    assert first.sentence.startswith(f"{name} is wrong at frame 0 (call 1): its nearest points of bodies")
+    assert not found.passed
 
 
 @pytest.mark.parametrize(

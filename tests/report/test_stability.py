@@ -98,3 +98,12 @@ def test_without_cases_there_is_no_matrix(report_of):
     pages = report_of()
     assert "stability.html" not in pages
     assert "Stability" not in text_of(pages["index.html"])
+
+
+def test_a_pipeline_whose_questions_are_answered_by_different_hands_has_a_column_for_each(case):
+    """FCL decides on collisions of brute force; near pairs are found by kernels of this program."""
+    swept = {"zip": [{"algorithm": "brute-force", "query": query} for query in ("collision", "distance")]}
+    said = text_of(case(swept=swept, base={"shape": "hull", "within": 0.1})["stability.html"])
+    assert "fcl brute-force survives 1 of 1 case." in said
+    assert "own brute-force survives 1 of 1 case." in said
+    assert "1 cases, 2 methods" in said

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 
 from markupsafe import Markup
 
@@ -22,16 +22,21 @@ def summary(compared: Comparisons) -> list[Markup]:
             "{} of two backends on the same poses: <strong>{}</strong> really disagree, {} lie inside a band."
         ).format(plural(verdicts, "verdict"), number(real) if real else "none", number(undecided))
     ]
-    blamed, crashed = Counter[str](), Counter[str]()
+    blamed, failed = Counter[str](), defaultdict[str, list[str]](list)
     for case in compared.cases:
-        (crashed if case["certificate"]["kind"] == "crashed" else blamed)[case["wrong"]] += 1
+        if case["certificate"]["kind"] == "crashed":
+            failed[case["wrong"]].append(case["certificate"]["reason"])
+        else:
+            blamed[case["wrong"]] += 1
     for name, count in sorted(blamed.items()):
         found.append(Markup("<strong>{}</strong> was proven wrong {}.").format(name, plural(count, "time")))
     for name, reasons in compared.findings.items():
         more = f", and {plural(len(reasons) - 1, 'finding')} like it" if len(reasons) > 1 else ""
         found.append(Markup("<strong>{}</strong> is wrong: {}{}.").format(name, reasons[0], more))
-    for name, count in sorted(crashed.items()):
-        found.append(Markup("<strong>{}</strong> crashed, hung or raised at {}.").format(name, plural(count, "pose")))
+    for name, reasons in sorted(failed.items()):
+        found.append(
+            Markup("<strong>{}</strong> failed at {}: {}.").format(name, plural(len(reasons), "pose"), reasons[0])
+        )
     both = f"{number(contradicted)} of them are wrong, both backends alike" if contradicted else "all of them are right"
     if judged:
         found.append(

@@ -77,9 +77,9 @@ class Case:
         """That of every run."""
         return methods_of(self.runs)
 
-    def result(self, pipeline: str) -> CaseResult | None:
-        """What became of it by a pipeline; None where it was not run."""
-        mine = [place for place, method in enumerate(self.methods) if method.pipeline == pipeline]
+    def result(self, label: str) -> CaseResult | None:
+        """What became of it by the methods of a label, which names who does the work; None where none was run."""
+        mine = [place for place, method in enumerate(self.methods) if method.label == label]
         if not mine:
             return None
         record = self.page.record

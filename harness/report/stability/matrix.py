@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,15 +18,18 @@ _MOST_NAMED = 4
 
 @dataclass(frozen=True)
 class Matrix:
-    """Cases against methods, whatever their shape: `labels` are what their pipelines are called."""
+    """Cases against methods, whatever their shape, by their labels.
+
+    A pipeline has two where kernels of this program answer some questions, and its library others.
+    """
 
     cases: tuple[Case, ...]
-    labels: Mapping[str, str]
+    labels: tuple[str, ...]
 
     @cached_property
     def rows(self) -> list[tuple[Case, list[CaseResult | None]]]:
         """Each case with what became of it by each method."""
-        return [(case, [case.result(pipeline) for pipeline in self.labels]) for case in self.cases]
+        return [(case, [case.result(label) for label in self.labels]) for case in self.cases]
 
     @property
     def totals(self) -> list[tuple[str, Counter[str]]]:
@@ -34,7 +37,7 @@ class Matrix:
         columns = zip(*(results for _, results in self.rows), strict=True)
         return [
             (label, Counter(result.word for result in column if result))
-            for label, column in zip(self.labels.values(), columns, strict=True)
+            for label, column in zip(self.labels, columns, strict=True)
         ]
 
     @property
@@ -60,7 +63,7 @@ def matrix(pages: Sequence[ExperimentPage]) -> Matrix | None:
     methods = dict.fromkeys(method for case in cases for method in case.methods)
     # what is exact comes last, as in the files
     order = sorted(methods, key=lambda method: not method.stepped)
-    return Matrix(tuple(cases), {method.pipeline: method.label for method in order}) if methods else None
+    return Matrix(tuple(cases), tuple(dict.fromkeys(method.label for method in order))) if methods else None
 
 
 def _is(result: CaseResult | None, word: str) -> bool:
