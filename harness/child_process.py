@@ -28,7 +28,7 @@ from typing import Literal, NoReturn
 import psutil
 
 from harness.process_limits import adopts_orphans, isolate
-from harness.python_child import python_command
+from harness.python_child import start_module
 
 _LENGTH = struct.Struct("!Q")
 _CHUNK = 2**20
@@ -173,16 +173,7 @@ class Child:
         """
         ours, theirs = socket.socketpair()
         with theirs:
-            program = subprocess.Popen(
-                python_command(module, str(theirs.fileno()), *arguments),
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                cwd=folder,
-                env=environment,
-                start_new_session=True,
-            )
+            program = start_module(module, theirs, arguments, environment, folder=folder, silent=True)
         child = cls(program.pid, ours)
         child._program = program
         return child

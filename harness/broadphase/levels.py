@@ -151,18 +151,18 @@ class Lattice(NamedTuple):
 def lattice_of(level: Level) -> Lattice:
     """The lattice of a level, in registers: a loop that writes to memory need not read it for every body."""
     return Lattice(
-        level.first,
-        level.row,
-        level.plane,
-        level.low_x,
-        level.low_y,
-        level.low_z,
-        level.last_x,
-        level.last_y,
-        level.last_z,
-        level.scale_x,
-        level.scale_y,
-        level.scale_z,
+        first=level.first,
+        row=level.row,
+        plane=level.plane,
+        low_x=level.low_x,
+        low_y=level.low_y,
+        low_z=level.low_z,
+        last_x=level.last_x,
+        last_y=level.last_y,
+        last_z=level.last_z,
+        scale_x=level.scale_x,
+        scale_y=level.scale_y,
+        scale_z=level.scale_z,
     )
 
 

@@ -55,16 +55,9 @@ def expand(
     backends can be asked is not looked at.
     """
     axes = [_without_duplicates(axis) for axis in declaration.axes]
-    combinations = math.prod(len(axis.rows) for axis in axes)
     varied = bool(axes) or not declaration.include
-    runs = (combinations * varied + len(declaration.include)) * measure.repeats
-    rows = len(declaration.exclude)
-    if not rows and (refusal := _too_many(axes, runs, measure)):
+    if refusal := _too_many_to_make(declaration, axes, measure, varied):
         problems.add(_varying_key(problems), refusal)
-        return Expansion()
-    if combinations * rows > MOST_COMPARISONS:
-        message = f"{combinations} combinations are too many to hold against {rows} rows of exclude; vary less"
-        problems.add(_varying_key(problems), message)
         return Expansion()
     base = _over(DEFAULTS, declaration.base)
     most = min(measure.max_runs // measure.repeats, MOST_POINTS)
@@ -88,25 +81,38 @@ def expand(
     for point in included:
         _add_conflicts([point], rules, set(), problems)
     expansion = Expansion(origins=_origins(resolved))
+    if problems.found:
+        return expansion
+    mentioned = [leaf for leaves in (*(axis.leaves for axis in axes), *declaration.include) for leaf in leaves]
+    first: dict[tuple[str | None, ...], Resolved] = {}
+    for point in resolved:
+        first.setdefault(_key(point), point)
+    unique = list(first.values())
+    _require_measurable(unique, measure, problems)
     if not problems.found:
-        mentioned = [leaf for leaves in (*(axis.leaves for axis in axes), *declaration.include) for leaf in leaves]
-        first: dict[tuple[str | None, ...], Resolved] = {}
-        for point in resolved:
-            first.setdefault(_key(point), point)
-        unique = list(first.values())
-        if measure.reference is not None and any(map(_has_no_reference, unique)):
-            message = "a reference knows gaps of recorded poses and no hits: choose query tolerance or distance"
-            problems.add(("measure", "reference", KEY), message)
-            return expansion
-        if "resting" in measure.families and any(point["poses"].value is None for point in unique):
-            message = (
-                "the family resting is of recorded poses, and motion.poses names none; record some, or leave it out"
-            )
-            problems.add(("measure", "families", KEY), message)
-            return expansion
         expansion.points = tuple(_points(unique, measure.reference))
         expansion.swept = _swept(unique, mentioned)
     return expansion
+
+
+def _too_many_to_make(declaration: Declaration, axes: list[Axis], measure: MeasureSpec, varied: bool) -> str | None:
+    """Why so many combinations are refused before any is made, if they are."""
+    combinations, rows = math.prod(len(axis.rows) for axis in axes), len(declaration.exclude)
+    if not rows:
+        return _too_many(axes, (combinations * varied + len(declaration.include)) * measure.repeats, measure)
+    if combinations * rows > MOST_COMPARISONS:
+        return f"{combinations} combinations are too many to hold against {rows} rows of exclude; vary less"
+    return None
+
+
+def _require_measurable(points: Sequence[Resolved], measure: MeasureSpec, problems: FileProblems) -> None:
+    """Report what is to be measured of points that do not have it."""
+    if measure.reference is not None and any(map(_has_no_reference, points)):
+        message = "a reference knows gaps of recorded poses and no hits: choose query tolerance or distance"
+        problems.add(("measure", "reference", KEY), message)
+    elif "resting" in measure.families and any(point["poses"].value is None for point in points):
+        message = "the family resting is of recorded poses, and motion.poses names none; record some, or leave it out"
+        problems.add(("measure", "families", KEY), message)
 
 
 def _without_duplicates(axis: Axis) -> Axis:

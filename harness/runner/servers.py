@@ -26,7 +26,7 @@ from harness.errors import InputError
 from harness.experiment.experiment import Experiment, Point
 from harness.measure.metrics import ON_DEMAND
 from harness.process_limits import interrupts_blocked
-from harness.python_child import python_command
+from harness.python_child import start_module
 from harness.runner.task import Report, Task
 from harness.scene.scene_files import Opened, SceneFiles
 
@@ -176,15 +176,8 @@ class _Server:
         with theirs:
             try:
                 with interrupts_blocked():  # the sweep answers Ctrl-C, also while the server starts
-                    self._process = subprocess.Popen(
-                        python_command("harness.runner.server", str(theirs.fileno()), backend),
-                        pass_fds=[theirs.fileno()],
-                        stdin=subprocess.DEVNULL,
-                        stdout=subprocess.DEVNULL,  # that is for results alone
-                        env=os.environ | _ONE_THREAD | {_MARK: self._mark},
-                        # what is sent to the sweep's whole group, as a terminal does, is for the sweep to answer
-                        start_new_session=True,
-                    )
+                    environment = os.environ | _ONE_THREAD | {_MARK: self._mark}
+                    self._process = start_module("harness.runner.server", theirs, [backend], environment)
             except OSError as error:
                 ours.close()
                 why = f"no process can be started: {error.strerror}"

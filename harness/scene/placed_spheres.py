@@ -131,7 +131,18 @@ def grid_of(placed: Placed, level: int) -> Grid:
     """The grid of a level."""
     x, y, z = placed.half[0], placed.half[1], placed.half[2]
     nx, ny, nz = placed.cells[level, 0], placed.cells[level, 1], placed.cells[level, 2]
-    return Grid(x, y, z, nx, ny, nz, nx / (2 * x), ny / (2 * y), nz / (2 * z), placed.offsets[level])
+    return Grid(
+        x,
+        y,
+        z,
+        nx,
+        ny,
+        nz,
+        per_x=nx / (2 * x),
+        per_y=ny / (2 * y),
+        per_z=nz / (2 * z),
+        first=placed.offsets[level],
+    )
 
 
 @inner

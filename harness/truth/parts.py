@@ -54,7 +54,7 @@ def surface_parts(vertices: Floats, faces: Triangles) -> Parts:
     triangles = np.ascontiguousarray(vertices[faces], np.float64)
     order: list[tuple[Ints, int]] = [(np.arange(len(faces)), -1)]
     nodes = 2 * len(faces) - 1
-    enclosing = np.empty((nodes, 8))
+    centres, radii, normals, halves = np.empty((3, nodes)), np.empty(nodes), np.empty((3, nodes)), np.empty(nodes)
     left, right, leaves = (np.full(nodes, -1, np.int64) for _ in range(3))
     centroids = triangles.mean(axis=1)
     crossed = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -63,28 +63,29 @@ def surface_parts(vertices: Floats, faces: Triangles) -> Parts:
         some, parent = order.pop()
         if parent >= 0:
             (left if left[parent] < 0 else right)[parent] = node
-        enclosing[node] = _enclosed(triangles[some].reshape(-1, 3), crossed[some].sum(axis=0))
+        found = _enclosed(triangles[some].reshape(-1, 3), crossed[some].sum(axis=0))
+        centres[:, node], radii[node], normals[:, node], halves[node] = found
         if len(some) == 1:
             leaves[node] = some[0]
         else:
             spread = centroids[some]
             along = spread[:, np.ptp(spread, axis=0).argmax()]
-            halves = np.argsort(along, kind="stable")
-            order.append((some[halves[len(some) // 2 :]], node))
-            order.append((some[halves[: len(some) // 2]], node))
+            sorted_along = some[np.argsort(along, kind="stable")]
+            order.append((sorted_along[len(some) // 2 :], node))
+            order.append((sorted_along[: len(some) // 2], node))
         node += 1
     return Parts(
-        np.zeros(1, np.int64),
-        np.ascontiguousarray(enclosing[:, :3].T),
-        enclosing[:, 3].copy(),
-        np.ascontiguousarray(enclosing[:, 4:7].T),
-        enclosing[:, 7].copy(),
-        left,
-        right,
-        leaves,
-        np.ascontiguousarray(triangles.transpose(2, 1, 0)),
-        np.arange(len(faces)),
-        np.zeros(len(faces)),
+        roots=np.zeros(1, np.int64),
+        centres=centres,
+        radii=radii,
+        normals=normals,
+        halves=halves,
+        left=left,
+        right=right,
+        leaves=leaves,
+        corners=np.ascontiguousarray(triangles.transpose(2, 1, 0)),
+        faces=np.arange(len(faces)),
+        around=np.zeros(len(faces)),
     )
 
 
@@ -95,7 +96,17 @@ def sphere_parts() -> Parts:
     centre, normal = np.zeros((3, 1)), np.array([[0.0], [0.0], [1.0]])
     first = np.zeros(1, np.int64)
     return Parts(
-        first, centre, reach, normal, reach, none, none, first, np.zeros((3, 3, 1)), first.copy(), np.full(1, 0.5)
+        roots=first,
+        centres=centre,
+        radii=reach,
+        normals=normal,
+        halves=reach,
+        left=none,
+        right=none,
+        leaves=first,
+        corners=np.zeros((3, 3, 1)),
+        faces=first.copy(),
+        around=np.full(1, 0.5),
     )
 
 
@@ -112,21 +123,21 @@ def together(surfaces: Sequence[Parts]) -> Parts:
         return np.ascontiguousarray(np.concatenate([getattr(parts, name) for parts in surfaces], axis=-1))
 
     return Parts(
-        shifted("roots", nodes),
-        joined("centres"),
-        joined("radii"),
-        joined("normals"),
-        joined("halves"),
-        shifted("left", nodes),
-        shifted("right", nodes),
-        shifted("leaves", triangles),
-        joined("corners"),
-        np.concatenate([parts.faces for parts in surfaces]),
-        joined("around"),
+        roots=shifted("roots", nodes),
+        centres=joined("centres"),
+        radii=joined("radii"),
+        normals=joined("normals"),
+        halves=joined("halves"),
+        left=shifted("left", nodes),
+        right=shifted("right", nodes),
+        leaves=shifted("leaves", triangles),
+        corners=joined("corners"),
+        faces=np.concatenate([parts.faces for parts in surfaces]),
+        around=joined("around"),
     )
 
 
-def _enclosed(points: Floats, normal: Floats) -> Floats:
+def _enclosed(points: Floats, normal: Floats) -> tuple[Floats, float, Floats, float]:
     """Centre, radius, normal and half thickness of a ball and a slab around points."""
     length = float(np.linalg.norm(normal))
     normal = normal / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -137,4 +148,4 @@ def _enclosed(points: Floats, normal: Floats) -> Floats:
     surplus = SURPLUS * float(np.abs(points).max())
     radius = float(np.sqrt((apart * apart).sum(axis=1).max())) * (1.0 + SURPLUS) + surplus
     half = float(np.abs(apart @ normal).max()) * (1.0 + SURPLUS) + surplus
-    return np.array([*centre, radius, *normal, half])
+    return centre, radius, normal, half

@@ -122,7 +122,18 @@ def solids(form: Form, bodies: Bodies, order: Ints, tolerance: float) -> Solids:
     measure(shapes, sizes, spins, start, reaches, rates)
     scale = 1.0 / unit_of(sizes)
     turns = start.copy()
-    return Solids(shapes, form.concave, sizes, reaches, spins, rates, start, turns, tolerance, scale)
+    return Solids(
+        shapes,
+        form.concave,
+        sizes=sizes,
+        reaches=reaches,
+        spins=spins,
+        rates=rates,
+        start=start,
+        turns=turns,
+        tolerance=tolerance,
+        scale=scale,
+    )
 
 
 @kernel
