@@ -7,7 +7,7 @@ quaternions w x y z. A backend without an entry has no reproductions of its own;
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from harness.arrays import Floats
 from harness.narrowphase.units import unit_of, unit_of_smallest
@@ -23,7 +23,7 @@ class Call:
     library : its name as a package
     version : an expression for its version
     imports : lines
-    ask : the body of a function that returns whether the two touch
+    ask : the body of a function that returns whether the two touch, or how far they are apart
     unit : m, the length that is told of as 1, for bodies of these sizes (m)
     """
 
@@ -228,3 +228,58 @@ CALLS: dict[tuple[str, Shape], Call] = {
     ),
 }
 """By backend and shape."""
+
+
+def _asked_for_gap(name: str, shape: Shape, last: str, instead: str) -> Call:
+    """The same call up to a line, and from there on others, which return the gap."""
+    call = CALLS[name, shape]
+    before, found, _ = call.ask.partition(last)
+    if not found:
+        raise ValueError(f"the call of {name} has no such line: {last}")
+    return replace(call, ask=before + instead)
+
+
+_FCL_GAP = """\
+one, other = body(A, FACES_A, P, Q), body(B, FACES_B, R, S)
+return max(0.0, fcl.distance(one, other, fcl.DistanceRequest(), fcl.DistanceResult()))
+"""
+_COAL_GAP = """\
+request = coal.DistanceRequest()
+request.gjk_tolerance = 1e-12
+one, other = body(A, FACES_A, P, Q), body(B, FACES_B, R, S)
+return max(0.0, coal.distance(one, other, request, coal.DistanceResult()))
+"""
+
+GAP_CALLS: dict[tuple[str, Shape], Call] = {
+    ("fcl", "hull"): _asked_for_gap("fcl", "hull", "return fcl.collide", _FCL_GAP),
+    ("fcl", "mesh"): _asked_for_gap("fcl", "mesh", "return fcl.collide", _FCL_GAP),
+    ("coal", "hull"): _asked_for_gap("coal", "hull", "request = coal", _COAL_GAP),
+    ("coal", "mesh"): _asked_for_gap("coal", "mesh", "request = coal", _COAL_GAP),
+    ("trimesh", "hull"): _asked_for_gap(
+        "trimesh", "hull", "return bool", "return max(0.0, manager.min_distance_internal())\n"
+    ),
+    ("trimesh", "mesh"): _asked_for_gap(
+        "trimesh", "mesh", "return bool", "return max(0.0, manager.min_distance_internal())\n"
+    ),
+    ("mujoco", "hull"): _asked_for_gap(
+        "mujoco",
+        "hull",
+        "mujoco.mj_collision",
+        "return max(0.0, mujoco.mj_geomDistance(model, data, 0, 1, 1e6, np.zeros(6)))\n",
+    ),
+    ("drake", "hull"): _asked_for_gap(
+        "drake",
+        "hull",
+        "return bool",
+        "query = scene.get_query_output_port().Eval(context)\n"
+        "return max(0.0, query.ComputeSignedDistancePairwiseClosestPoints()[0].distance)\n",
+    ),
+    ("pybullet", "hull"): _asked_for_gap(
+        "pybullet",
+        "hull",
+        "pybullet.performCollisionDetection",
+        "# the margin of 0.001 inflates each hull\n"
+        "return max(0.0, min(point[8] for point in pybullet.getClosestPoints(*bodies, 1e3)) + 0.002)\n",
+    ),
+}
+"""Those that tell gaps, by backend and shape."""

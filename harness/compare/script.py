@@ -1,4 +1,4 @@
-"""A wrong verdict as a Python file that needs numpy and the library alone, for those who maintain the library.
+"""A wrong answer as a Python file that needs numpy and the library alone, for those who maintain the library.
 
 It builds the two bodies, asks the library in the way that its documentation has, prints the answer and the truth, and
 checks the proof of the truth with fractions. Lengths are in the unit that the library is told of, a power of two.
@@ -12,6 +12,7 @@ import sys
 import tempfile
 import zlib
 from dataclasses import replace
+from math import isinf
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
+from harness.compare.exact_gap import ExactGap
 from harness.compare.judge import judge
-from harness.compare.library_calls import CALLS, Call
+from harness.compare.library_calls import CALLS, GAP_CALLS, Call
 from harness.compare.outcome import Case
 from harness.scene.mesh import Surface
+from harness.scene.scene import Scene
 
 LONGEST = 60
 """Lines."""
@@ -30,7 +33,7 @@ _SECONDS = 60.0
 # Numbers that are written out; more of them are packed.
 _FEW = 48
 
-_TEXT = '''"""{library}: {state} {shape}s of which it says the opposite ({pose}). Needs numpy and {library} alone."""
+_TEXT = '''"""{library}: {error} ({pose}). Needs numpy and {library} alone."""
 
 {packing}from fractions import Fraction
 
@@ -46,7 +49,7 @@ P, Q = {position}, {quaternion}
 R, S = {other_position}, {other_quaternion}
 
 
-def touching():
+def {question}():
 {ask}
 
 def exact(points, position, quaternion):
@@ -62,10 +65,10 @@ def exact(points, position, quaternion):
 
 one, other = exact(A, P, Q), exact(B, R, S)
 {proof}
-said = touching()
-print("{library}", {version}, "says", "they touch" if said else "they do not touch")
+said = {question}()
+print("{library}", {version}, "says", {said})
 print("exactly, they {truth}, which is checked")
-print("reproduced" if said != {is_touching} else "not reproduced: this version is right")
+print("reproduced" if {wrong} else "not reproduced: this version is right")
 '''
 
 _COMMON = """# the same point is a mean of vertices of both, with positive weights
@@ -80,6 +83,22 @@ _PLANE = """# along this direction every point of the first lies farther than ev
 normal = [Fraction(part) for part in {normal}]
 along = [[sum(n * c for n, c in zip(normal, point)) for point in points] for points in (one, other)]
 assert min(along[0]) > max(along[1])"""
+
+# of gaps, against a limit between what is true and what was told
+_POINTS = """# two points, means of vertices of either with positive weights, are nearer than this
+limit = Fraction({limit!r})
+weights = {first}, {second}
+assert all(Fraction(share) > 0 for side in weights for _, share in side)
+assert all(sum(Fraction(share) for _, share in side) == 1 for side in weights)
+mean = [[sum(Fraction(share) * points[k][axis] for k, share in side) for axis in range(3)]
+        for side, points in zip(weights, (one, other))]
+assert sum((a - b) ** 2 for a, b in zip(*mean)) < limit ** 2"""
+_FAR_PLANE = (
+    "# and the hulls are farther apart than this\nlimit = Fraction({limit!r})\n"
+    + _PLANE
+    + """
+assert (min(along[0]) - max(along[1])) ** 2 > limit ** 2 * sum(n * n for n in normal)"""
+)
 
 
 _PACKING = "import base64\nimport zlib\n"
@@ -96,10 +115,11 @@ def script_of(case: Case) -> str | None:
     ----------
     case : of two bodies
     """
-    call = CALLS.get((case.wrong, case.scene.shape))  # of libraries alone: methods of this program have none
-    if call is None or case.question.query != "collision" or len(case.scene.bodies) != 2:
+    calls = {"collision": CALLS, "tolerance": GAP_CALLS, "distance": GAP_CALLS}.get(case.question.query, {})
+    call = calls.get((case.wrong, case.scene.shape))  # of libraries alone: methods of this program have none
+    if call is None or len(case.scene.bodies) != 2:
         return None
-    text = _written(case, call)
+    text = _written(case, call) if case.question.query == "collision" else _written_of_gap(case, call)
     return text if text is not None and text.count("\n") <= LONGEST and reproduces(text) else None
 
 
@@ -140,10 +160,57 @@ def _written(case: Case, call: Call) -> str | None:
                 return None
             proof = hulls.certificate
         checked = _PLANE.format(normal=proof["normal"])
+    state = "overlapping" if truth.touching else "separate"
     unit = call.unit(bodies.sizes)
-    parts = [_solid(solid, unit) for solid in solids]
-    places = [(pose.positions[body] / unit).tolist() for body in (i, j)]
-    turns = [pose.quaternions[body].tolist() for body in (i, j)]
+    return _filled(
+        scene,
+        case,
+        call,
+        error=f"{state} {scene.shape}s of which it says the opposite",
+        question="touching",
+        proof=checked,
+        said='"they touch" if said else "they do not touch"',
+        truth=f"overlap by {-truth.gap / unit:.3g}" if truth.touching else f"are {truth.gap / unit:.3g} apart",
+        wrong=f"said != {truth.touching}",
+    )
+
+
+def _written_of_gap(case: Case, call: Call) -> str | None:
+    """Of a gap that is too wide or too narrow, or of a near pair that is missed or one that is told and is not near."""
+    scene, told = replace(case.scene, hulls={}), case.told
+    unit = call.unit(scene.bodies.sizes)
+    exact = ExactGap(scene, case.pose, case.bodies)
+    if told is None or scene.shape == "sphere":
+        return None
+    other = told if case.question.query == "distance" and not isinf(told) else case.question.within
+    limit = 0.5 * (exact.value + other) / unit
+    too_wide = isinf(told) or told > exact.value
+    if too_wide:
+        proof = _POINTS.format(limit=limit, first=exact.certificate["first"], second=exact.certificate["second"])
+    else:
+        hulls = judge(replace(scene, shape="hull"), *case.bodies, case.pose.positions, case.pose.quaternions)
+        if hulls.touching:  # what parts two surfaces in each other's hollows is more than one plane
+            return None
+        proof = _FAR_PLANE.format(limit=limit, normal=hulls.certificate["normal"])
+    return _filled(
+        scene,
+        case,
+        call,
+        error=f"two {scene.shape}s, of which it tells too {'wide' if too_wide else 'narrow'} a gap",
+        question="gap",
+        proof=proof,
+        said='"that the gap is", said',
+        truth=f"are {exact.value / unit:.6g} apart",
+        wrong="said > limit" if too_wide else "said < limit",
+    )
+
+
+def _filled(scene: Scene, case: Case, call: Call, **texts: str) -> str:
+    """The file, given what is asked and proved."""
+    pose, unit = case.pose, call.unit(scene.bodies.sizes)
+    parts = [_solid(scene.solid_of_body(body), unit) for body in case.bodies]
+    places = [(pose.positions[body] / unit).tolist() for body in case.bodies]
+    turns = [pose.quaternions[body].tolist() for body in case.bodies]
     packed = any(part.startswith("unpacked") for both in parts for part in both)
     return _TEXT.format(
         packing=_PACKING if packed else "",
@@ -152,13 +219,8 @@ def _written(case: Case, call: Call) -> str | None:
         version=call.version,
         imports=call.imports,
         ask="\n".join(f"    {line}" if line else "" for line in call.ask.strip().splitlines()) + "\n",
-        shape=scene.shape,
         pose=pose.name,
         unit=unit,
-        state="overlapping" if truth.touching else "separate",
-        truth=f"overlap by {-truth.gap / unit:.3g}" if truth.touching else f"are {truth.gap / unit:.3g} apart",
-        is_touching=truth.touching,
-        proof=checked,
         first=parts[0][0],
         faces=parts[0][1],
         second=parts[1][0],
@@ -167,6 +229,7 @@ def _written(case: Case, call: Call) -> str | None:
         quaternion=turns[0],
         other_position=places[1],
         other_quaternion=turns[1],
+        **texts,
     )
 
 

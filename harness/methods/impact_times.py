@@ -133,6 +133,8 @@ class KernelImpacts:
         steady = ((motion.velocities == self._velocities) & (motion.spins == self._spins)).all(axis=1)
         self._velocities, self._spins = motion.velocities.copy(), motion.spins.copy()
         asked = PairsAsked(close, self._before, steady, motion.first, self._tolerance)
+        if len(close) > len(self._found.pairs):  # a pair seldom begins to touch twice in a frame
+            self._found = onsets_of(0, 2 * len(close))
         found = Onsets(self._found.pairs, self._found.times, np.empty(len(close), PAIR_STATE))
         count = self._search(asked, flights, found)
         if count.onsets > len(found.pairs):  # count first, then make room: rare, as the room is kept

@@ -23,10 +23,10 @@ from harness.narrowphase.triangle_tree import TriangleTree, centre_of, radius_of
 from harness.narrowphase.vectors import Vector, cross, dot, minus
 from harness.scene.mesh import Mesh, Triangles
 
-# Nodes along a side. With 24 following a contact takes 5 % longer; with 48 no less, and making it three times as long.
+# Nodes along a side. With 48 a contact takes 5 % fewer steps, and making the field two and a half times as long.
 NODES = 32
-# Points of a surface that are looked up in the field of another.
-MOST_POINTS = 128
+# Points of a surface that are looked up in the field of another. With half of them a contact takes 9 % more steps.
+MOST_POINTS = 512
 MOST_HOLES = 4
 # Of the diameter: by how much distances are shortened, more than single precision and rounding take from them.
 ROUNDING = 1e-6
@@ -42,7 +42,7 @@ class ClearanceField(NamedTuple):
     values : (n, n, n) float32 array, of each node of a cube around the centre the distance from the surface, positive
         inside of it, 0 where the side is not known; n = 0 where the surface cannot be closed or is not in one piece, so
         that nothing is proved by it
-    points : (k, 3) float array, vertices
+    points : (3 k,) float array, vertices: x of all, then y, then z
     caps : (h, 4) float array, centre and radius of a sphere around each cap
     """
 
@@ -53,7 +53,7 @@ class ClearanceField(NamedTuple):
 
 def no_field() -> ClearanceField:
     """Of a surface of which nothing is to be looked up."""
-    return ClearanceField(np.empty((0, 0, 0), np.float32), np.empty((0, 3)), np.empty((0, 4)))
+    return ClearanceField(np.empty((0, 0, 0), np.float32), np.empty(0), np.empty((0, 4)))
 
 
 def clearance_field(mesh: Mesh, nodes: int = NODES) -> ClearanceField:
@@ -164,7 +164,7 @@ def _spread(vertices: Floats) -> Floats:
     while len(chosen) < min(MOST_POINTS, len(vertices)):
         squared = np.minimum(squared, np.square(vertices - vertices[chosen[-1]]).sum(axis=1))
         chosen.append(int(np.argmax(squared)))
-    return np.ascontiguousarray(vertices[chosen])
+    return np.ascontiguousarray(vertices[chosen].T).ravel()
 
 
 def _holes(faces: Triangles) -> list[list[int]] | None:

@@ -8,6 +8,7 @@ of it. It ends when the gap is seen to be wider than that.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import sqrt
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -24,7 +25,7 @@ from harness.narrowphase.overlap_duration import overlap_lasts
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
 from harness.narrowphase.triangles_within import triangles_within
-from harness.narrowphase.vectors import scaled
+from harness.narrowphase.vectors import dot, scaled
 from harness.narrowphase.verdicts import PairVerdict, SearchVerdict
 
 Shape = TypeVar("Shape", SupportMap, MeshShape)
@@ -45,6 +46,9 @@ STEPS = 100_000
 # Of the time for which the last crossing lasted: the next one is to last as long, if one can be found. With .5, or with
 # a search from higher up, following a contact takes longer.
 LESS = 0.3
+# Of the sum of the sizes: a way. Where no crossing lasts for longer than that takes, at first and near the end of a
+# contact, it is not worth asking how deep the bodies are in each other.
+SHALLOW = 5e-4
 # Of that: where the next one lasts no longer, it is sought around more triangles, for more steps; from
 # the roots that takes three times as long.
 MUCH_LESS, LEVELS_WIDER, WIDER_STEPS = 1.0, 3, 300
@@ -204,23 +208,29 @@ def hold_of_surfaces(
     """How firmly two surfaces touch, whose contact ends at a gap of `near`; and where to start next time."""
     trees, pose, stack = Trees(shape_a.tree, shape_b.tree), seen.pose, last.stack
     reach_a, reach_b = shape_a.radius * pose.size_a, shape_b.radius * pose.size_b
-    deep = immersion_lasts(shape_a.field, shape_b.field, reach_a, reach_b, seen)
-    if deep > last.enough:  # at first and near the end, where it is shorter, a crossing lasts longer
-        return Hold(deep, 0.0, near), last
+    speed = sqrt(dot(seen.drift, seen.drift))
+    speed += sqrt(dot(seen.spin_a, seen.spin_a)) * reach_a + sqrt(dot(seen.spin_b, seen.spin_b)) * reach_b
+    at_first = last.enough == 0.0 and last.instants == 0
+    if at_first or last.enough * speed > SHALLOW * (pose.size_a + pose.size_b):
+        deep = immersion_lasts(shape_a.field, shape_b.field, reach_a, reach_b, seen)
+        if deep > last.enough:  # near the end, where it is shorter, a crossing lasts longer
+            return Hold(deep, 0.0, near), LastCrossing(last.leaves, LESS * deep, 0, stack)
     margin = MARGIN * (pose.size_a + pose.size_b)
     start = last.leaves
     for _ in range(LEVELS_UP):
         start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
     found = longest_crossing(trees, seen, start, last.enough, NEARBY_STEPS, stack)
-    if not found.lasts > MUCH_LESS * last.enough and last.instants == 0:
-        for _ in range(LEVELS_WIDER):
-            start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
-        wider = longest_crossing(trees, seen, start, last.enough, WIDER_STEPS, stack)
-        found = wider if wider.lasts > found.lasts or found.leaves.a < 0 else found
     points, gap, leaves = NO_WITNESSES, 0.0, found.leaves
     if leaves.a < 0:
         points, leaves = nearest_points(trees, pose, last.leaves, margin), last.leaves
         gap = points.gap
+    # triangles that crossed and are still near have just parted: what is around them mostly has, too
+    if gap > near or (gap == 0.0 and not found.lasts > MUCH_LESS * last.enough and last.instants == 0):
+        for _ in range(LEVELS_WIDER):
+            start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
+        wider = longest_crossing(trees, seen, start, last.enough, WIDER_STEPS, stack)
+        if wider.leaves.a >= 0 and (wider.lasts > found.lasts or found.leaves.a < 0):
+            found, gap, leaves = wider, 0.0, wider.leaves
     if gap > near:  # a search for any triangles that are near is a search for any that cross as well
         gap, leaves = triangles_within(trees, pose, near, margin, stack)
         if gap > near:
@@ -234,5 +244,5 @@ def hold_of_surfaces(
             found, gap, leaves = other, 0.0, other.leaves
     if found.lasts > 0.0:
         return Hold(found.lasts, 0.0, near), LastCrossing(leaves, LESS * found.lasts, 0, stack)
-    lasts = nearness_lasts(points, seen, near)
+    lasts = nearness_lasts(points, seen, near * (1.0 + RESOLUTION / ENDING_GAP))
     return Hold(0.0, lasts, near - gap), LastCrossing(leaves, 0.0, last.instants + 1, stack)

@@ -25,7 +25,7 @@ from harness.narrowphase.verdicts import PairVerdict
 # Halvings of a time until the proof succeeds.
 HALVINGS = 40
 # Halvings of what is left between a time that was proved and one that was not.
-REFINEMENTS = 3
+REFINEMENTS = 10
 # Crossing triangles among which the ones that cross longest are chosen, where none do for long enough.
 TRIALS = 6
 

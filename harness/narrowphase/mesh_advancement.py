@@ -7,7 +7,8 @@ time of impact when it is that of two triangles a tolerance apart, and that noth
 proves this for every pair of parts by itself, so that ribs and hollows need no rule of their own.
 
 The hulls go first: while they do not touch, nothing inside them does. Then the surfaces are searched in windows of time
-in which few of their triangles can touch, which most contacts are found in; only then through the trees.
+in which few of their triangles can touch, which most contacts are found in, and in which most bodies that have just
+parted are seen to leave each other's hollows; only then through the trees.
 """
 
 from __future__ import annotations
@@ -191,14 +192,13 @@ def time_of_mesh_impact(
     trees, steps = Trees(shape_a.tree, shape_b.tree), hulls.steps
     found = FirstTouch(SearchVerdict.STALLED, hulls.time, 0.0, hulls.axis, NO_NODES, 0)
     for spell in range(MOST_SPELLS):
-        if hulls.gap > 0.0:
-            found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, hulls.axis)
-            steps += found.steps
-            if found.verdict != SearchVerdict.STALLED:
-                break
-            now = found.time
-        else:
-            now = hulls.time
+        # of hulls that overlap, the way from centre to centre is as good a guess as any
+        axis = hulls.axis if hulls.gap > 0.0 else unit(minus(place(a, hulls.time), place(b, hulls.time)))
+        found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, axis)
+        steps += found.steps
+        if found.verdict != SearchVerdict.STALLED:
+            break
+        now = found.time
         until = rest
         if spell + 1 < MOST_SPELLS:
             until = apart_again(shape_a.hull, shape_b.hull, a, b, now, rest, coarse, hulls.warm_start)

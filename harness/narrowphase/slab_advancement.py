@@ -1,9 +1,9 @@
 """When two surfaces touch soon after their hulls have come near each other: few of their triangles can.
 
-Along the axis on which the hulls were apart, a window of time ahead, all of one body is above some height and all of
-the other is below some other. So only triangles that come below the second of one, and above the first of the other,
-can touch in the window: two small caps, for bodies that bulge, whose triangles are then advanced pair by pair. Nothing
-is asked of pairs of nodes, of which a search through both trees looks at a thousand.
+Along the axis on which the hulls were apart, or nearly are, a window of time ahead, all of one body is above some
+height and all of the other is below some other. So only triangles that come below the second of one, and above the
+first of the other, can touch in the window: two small caps, for bodies that bulge, whose triangles are then advanced
+pair by pair. Nothing is asked of pairs of nodes, of which a search through both trees looks at a thousand.
 
 A point at p from its centre moves along the axis n at p.(n x w), which changes by at most |n x w| |w x p| a second. So
 its height during a time t is at least the lesser of p.n and p.(n + t (n x w)), less t^2 / 2 times this bound.
@@ -30,7 +30,9 @@ ROOM, HALVINGS = 96, 3
 # Pairs of triangles that may touch in a window, at most.
 MOST_PAIRS = 512
 # Of the mean size: how far the bodies may come towards each other in a window.
-TRAVEL = 0.01
+TRAVEL = 0.02
+# Of the mean size: how far hulls may be in each other along the axis in a window; deeper ones hold too many triangles.
+DEEPEST = 0.05
 # Windows after which surfaces are searched through their trees: those that are in each other's hollows.
 MOST_WINDOWS = 12
 
@@ -75,16 +77,20 @@ class Slab(NamedTuple):
 
 
 class NearPairs(NamedTuple):
-    """Room for pairs of triangles, as leaves, and of each how long they certainly stay apart, s."""
+    """Room for pairs of triangles, as leaves, and of each how long they certainly stay apart, s.
+
+    And for the spheres around the triangles of the second cap, (4, ROOM): centres, seen from body a, and radii.
+    """
 
     leaves: Ints
     waits: Floats
+    balls: Floats
 
 
 @kernel
 def empty_pairs() -> NearPairs:
     """Unwritten."""
-    return NearPairs(np.empty((MOST_PAIRS, 2), np.int64), np.empty(MOST_PAIRS))
+    return NearPairs(np.empty((MOST_PAIRS, 2), np.int64), np.empty(MOST_PAIRS), np.empty((4, ROOM)))
 
 
 @kernel
@@ -128,9 +134,12 @@ def slab_of(
         rise_a = rise_of(at.turn_a, a.size, axis, plus(axis, scaled(across_a, most)), 0.0, 0.0, slack * bend_a)
         end = minus(down, scaled(across_b, most))
         rise_b = rise_of(at.turn_b, b.size, down, end, -offset, -offset - drift * most, slack * bend_b)
-        count_a = below(trees.a, rise_a, at.flight.aim - lowest_of(hull_b, rise_b), cap_a)
+        low_a, low_b = lowest_of(hull_a, rise_a), lowest_of(hull_b, rise_b)
+        if -(low_a + low_b) > DEEPEST * 0.5 * (a.size + b.size):
+            break
+        count_a = below(trees.a, rise_a, at.flight.aim - low_b, cap_a)
         if count_a >= 0:
-            count_b = below(trees.b, rise_b, at.flight.aim - lowest_of(hull_a, rise_a), cap_b)
+            count_b = below(trees.b, rise_b, at.flight.aim - low_a, cap_b)
             if count_b >= 0:
                 break
         most *= 0.5
@@ -145,17 +154,20 @@ def near_pairs(trees: Trees, at: Instant, slab: Slab, cap_a: Cap, cap_b: Cap, fo
     """
     a, b, aim = at.flight.a, at.flight.b, at.flight.aim
     travel = slab.length * fastest_passing(a, b) + aim
-    count, best = 0, np.inf
+    count, best, balls = 0, np.inf, found.balls
+    for n in range(slab.count_b):
+        other = moving_disc_b(trees.b, at, cap_b.leaves[n])
+        balls[0, n], balls[1, n], balls[2, n] = plus(at.offset, other.arm)
+        balls[3, n] = other.radius + travel
     for m in range(slab.count_a):
         one = moving_disc_a(trees.a, at, cap_a.leaves[m])
+        (x, y, z), below_aim = one.arm, aim - cap_a.lowest[m]
         for n in range(slab.count_b):
+            u, v, w, reach = balls[0, n] - x, balls[1, n] - y, balls[2, n] - z, one.radius + balls[3, n]
+            if cap_b.lowest[n] >= below_aim or u * u + v * v + w * w >= reach * reach:
+                continue
             lowest = cap_a.lowest[m] + cap_b.lowest[n]
-            if lowest >= aim:
-                continue
             other = moving_disc_b(trees.b, at, cap_b.leaves[n])
-            between, reach = minus(plus(at.offset, other.arm), one.arm), one.radius + other.radius + travel
-            if dot(between, between) >= reach * reach:
-                continue
             wait = until_discs_touch(one, other, at, slab.length).wait
             if wait == np.inf:
                 continue

@@ -158,3 +158,14 @@ def test_faces_that_slide_over_each_other_are_followed_for_a_bounded_number_of_s
         assert ended.verdict == SearchVerdict.STALLED
         assert ended.steps <= MOST_CREEPING
         assert 0.0 < ended.time < 5.0 * WIDTH - 0.5  # when they come apart
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9])
+def test_hulls_that_slide_a_little_inside_each_other_are_followed_in_few_steps(depth):
+    # which way they move shows that they go on to overlap; how fast would prove no more than a step of the depth
+    cube = shape_named("cube").hull
+    a, b = body(), body((0.1, WIDTH - depth, 0.05), (0.2, 0.0, 0.0))
+    ended = end_of_hull_contact(cube, cube, a, b, 0.0, 9.0, 1e-10)
+    assert ended.verdict == SearchVerdict.FOUND
+    assert ended.time == pytest.approx(5.0 * (WIDTH - 0.1), abs=1e-8)
+    assert ended.steps < 100
