@@ -16,6 +16,11 @@ def cpu_time() -> float:
     return process_time() + _of_children
 
 
+def charged() -> float:
+    """s of it that children used in its place."""
+    return _of_children
+
+
 def charge(seconds: float) -> None:
     """Count CPU time, s, that a child used for an answer to this process."""
     global _of_children

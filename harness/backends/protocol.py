@@ -60,7 +60,9 @@ class ImpactTimes(NamedTuple):
 class Backend(Protocol):
     """A detector; made without arguments, then loaded once, then asked once a frame.
 
-    It does not move anything: motion, box walls and response are the same for all backends.
+    It does not move anything: motion, box walls and response are the same for all backends. What it does for an answer
+    it does before it returns, and in this process: clocks see nothing else, unless a child's time is charged to it
+    (`harness.cpu_time.charge`).
 
     Attributes
     ----------

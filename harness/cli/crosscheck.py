@@ -38,15 +38,20 @@ from harness.scene.launch import PlacementError
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
 from harness.scene.scene_files import Opened
-from harness.vocabulary import EXACT_FRAMES, LIBRARY_IMPACTS, MethodName, PipelineName, Query, algorithms_of
+from harness.vocabulary import (
+    EXACT_FRAMES,
+    LIBRARY_IMPACTS,
+    OWN_BACKEND,
+    MethodName,
+    PipelineName,
+    Query,
+    algorithms_of,
+)
 
-DEFAULT: Mapping[Query, tuple[str, str]] = {
-    "collision": ("fcl", "pybullet"),
-    "tolerance": ("fcl", "pybullet"),
-    "distance": ("fcl", "pybullet"),
-    "impact": ("fcl", LIBRARY_IMPACTS),
-}
+DEFAULT = (OWN_BACKEND, "pybullet")
 """What is compared where an experiment names fewer than two."""
+DEFAULT_OF: Mapping[Query, tuple[str, str]] = {"impact": (OWN_BACKEND, LIBRARY_IMPACTS)}
+"""Likewise, of a query that those cannot be asked."""
 
 Asked = dict[Query, tuple[str, ...]]
 """By query, the methods that are asked it."""
@@ -99,7 +104,7 @@ def backends_of(experiment: Experiment, chosen: tuple[str, ...] = ()) -> tuple[A
     asked, missing_ones = Asked(), dict[str, str]()
     for query in dict.fromkeys(method.query for method in methods):
         named = tuple(dict.fromkeys(one.short for one in methods if one.stepped and one.query == query))
-        wanted = chosen or (named if len(named) > 1 else DEFAULT[query])
+        wanted = chosen or (named if len(named) > 1 else DEFAULT_OF.get(query, DEFAULT))
         lacking = {name: why for name in wanted if (why := missing(PipelineName.read(name).backend)) is not None}
         if chosen and lacking:
             raise InputError("\n".join(lacking.values()))

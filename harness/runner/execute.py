@@ -9,6 +9,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite
 
+from harness.backends import registry
+from harness.backends.contract import ContractError
+from harness.child_process import cpu_time_of_descendants
+from harness.cpu_time import charged
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.measure.metrics import from_outcome
@@ -84,7 +88,12 @@ def execute(
     watched = traced or recorded or (point.reference is not None and is_stepped(point))
     fly = partial(pipeline.fly, law, traced=watched)
     again = partial(pipeline.fly, law, observed=False)
+    elsewhere = cpu_time_of_descendants() - charged()
     outcome, flights = (fly(), 1) if traced or recorded else fly_long_enough(fly, again)
+    if not registry.ours(point.engine.backend):
+        _require_work_here(
+            point.engine.backend, cpu_time_of_descendants() - charged() - elsewhere, flights, outcome.metrics
+        )
     metrics = outcome.metrics | clock.metrics() | {"peak_memory": _peak_memory()}
     if recorded:
         return Result(metrics, plan, outcome.trace, flights, recording_of(point, scene, outcome))
@@ -111,6 +120,26 @@ def _hits_as_planned(method: Method, plan: Plan, law: MotionLaw, scene: Scene, s
     trace = method.load(scene, plan).fly(law.slowed(slower), traced=True).trace
     assert trace is not None, "a traced flight has a trace"
     return trace
+
+
+# Of the time of the flights, and s: so much CPU time may be used elsewhere unseen.
+_UNSEEN, _FEWEST_SECONDS = 0.2, 0.001
+
+
+def _require_work_here(backend: str, elsewhere: float, flights: int, metrics: Mapping[str, float]) -> None:
+    """Refuse a plugin that lets other processes work, which no clock of a run sees.
+
+    Parameters
+    ----------
+    elsewhere : s of CPU time that other processes used in so many flights, and that was not charged to this one
+    metrics : of one of them
+    """
+    if elsewhere > max(_FEWEST_SECONDS, _UNSEEN * flights * metrics["run_seconds"]):
+        raise ContractError(
+            f'backend "{backend}": it works in processes of its own, which used {elsewhere:.2g} s of CPU time that no '
+            "clock of a run sees; what is timed must be done in the process that asks it, or charged to it "
+            "(harness.cpu_time.charge)"
+        )
 
 
 def _require_finite_metrics(metrics: Mapping[str, float]) -> None:

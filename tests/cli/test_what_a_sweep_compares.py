@@ -9,7 +9,7 @@ from harness.cli.main import main
 from harness.report.site import render
 
 HEAD = """
-import os, sys, traceback
+import os, sys, time, traceback
 import numpy as np
 from harness.backends.fcl import Fcl
 
@@ -103,3 +103,34 @@ def test_what_cannot_be_compared_is_no_row_of_verdicts_without_disagreement(tmp_
     out = capsys.readouterr().out
     assert "fcl/grid and pybullet: fcl/grid and pybullet are not comparable on shape hull" in out
     assert "0 verdicts" not in out
+
+
+DELEGATES = """
+    def pairs(self, positions, quaternions):
+        reading, writing = os.pipe()
+        if not os.fork():
+            started = time.process_time()
+            while time.process_time() - started < 0.01:
+                pass
+            os.write(writing, super().pairs(positions, quaternions).tobytes())
+            os._exit(0)
+        os.close(writing)
+        with os.fdopen(reading, "rb") as answer:
+            found = np.frombuffer(answer.read(), np.int64).reshape(-1, 2)
+        used = os.wait4(-1, 0)[2]
+        {charged}
+        return found
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["delegates", "charges"])
+def test_work_that_other_processes_do_is_charged_or_fails_the_run(name, tmp_path, monkeypatch, capsys):
+    charge = "__import__('harness.cpu_time').cpu_time.charge(used.ru_utime + used.ru_stime)"
+    monkeypatch.setitem(LIARS, name, DELEGATES.format(charged=charge if name == "charges" else ""))
+    install(name, tmp_path / "plugins", monkeypatch)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "liar.yaml").write_text(EXPERIMENT.format(name=name).replace(", compare: on", ""))
+    assert main(["sweep", "liar.yaml"]) == (0 if name == "charges" else 1)
+    said = f'backend "{name}": it works in processes of its own, which used'
+    assert (said in capsys.readouterr().err) == (name == "delegates")

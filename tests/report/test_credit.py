@@ -34,7 +34,7 @@ def test_it_is_said_how_many_pairs_the_library_was_asked_about(report_of):
 
 def test_what_was_not_counted_is_not_said(report_of):
     said = findings_of(report_of(swept=METHODS, base={"shape": "hull"}))
-    assert "kernels of this program" not in said
+    assert "kernels of this program settled" not in said
 
 
 def tied(parameters, repeat, metrics):
@@ -60,3 +60,10 @@ def test_a_clock_that_stands_still_is_neither_told_nor_drawn(report_of):
         assert "object/object test time" in told
         assert "object/wall test time" not in told
         assert "box_seconds" not in told
+
+
+def test_the_time_of_walls_is_no_librarys(report_of):
+    said = findings_of(report_of(swept=METHODS, base={"shape": "hull", "count": 10}))
+    assert "Walls are tested by kernels of this program, whatever finds the pairs." in said
+    none = findings_of(report_of(swept=METHODS, base={"shape": "hull", "count": 10}, fate=unwalled))
+    assert "Walls are tested" not in none

@@ -9,6 +9,7 @@ from markupsafe import Markup
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import number
 from harness.report.series import Arrangement
+from harness.report.words import is_noisy
 from harness.vocabulary import MethodName
 
 
@@ -21,7 +22,16 @@ def credit_sentences(arrangement: Arrangement) -> list[Markup]:
             points.setdefault(method, []).append(point)
     several = len({method.shape for method in points}) > 1
     sentences = [_sentence(method, f", {method.shape}," if several else "", found) for method, found in points.items()]
-    return [sentence for sentence in sentences if sentence]
+    return [sentence for sentence in (*sentences, _walls(arrangement)) if sentence]
+
+
+def _walls(arrangement: Arrangement) -> Markup:
+    """Of a clock of walls that is shown of several methods: it is no library's."""
+    shown = [name for name in arrangement.metrics if name.startswith("box_") and is_noisy(name)]
+    methods = {MethodName.of(point.parameters) for point in arrangement.points if not point.good.empty}
+    if len(methods) < 2 or not any((point.values(name) > 0.0).any() for point in arrangement.points for name in shown):
+        return Markup()
+    return Markup("Walls are tested by kernels of this program, whatever finds the pairs.")
 
 
 def _sentence(method: MethodName, shape: str, points: Sequence[MeasuredPoint]) -> Markup:
