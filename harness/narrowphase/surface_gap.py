@@ -22,7 +22,7 @@ from harness.narrowphase.placed_parts import Disc, disc_a, disc_b
 from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees
 from harness.narrowphase.triangle_blocks import BLOCK, TriangleBlocks, block_triangle_a, block_triangle_b
 from harness.narrowphase.triangle_distance import walk
-from harness.narrowphase.triangle_tree import radius_of
+from harness.narrowphase.triangle_tree import TriangleTree, radius_of
 from harness.narrowphase.vectors import Vector, dot, minus, scaled, turned_back
 
 # How many times as wide as the other a node may be, to be left whole though it has few triangles: of a floor or a wall
@@ -125,6 +125,9 @@ def surface_gap(
     if start.a >= 0:
         first, other = blocks.a.first[start.a], blocks.b.first[start.b]
         best, limit = nearer_triangles(blocks, pose, first, other, enough, tolerance, best, limit)
+        if enough < best.gap < np.inf:  # those next to them are mostly nearest now: a tenth less time
+            around = NodePair(around_leaf(trees.a, blocks.a, start.a), around_leaf(trees.b, blocks.b, start.b))
+            best, limit = nearest_of_blocks(blocks, pose, around, enough, tolerance, best, limit, scratch.parts)
     scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = 0, 0, 0.0
     height = 1
     while height > 0 and best.gap > enough:
@@ -138,6 +141,15 @@ def surface_gap(
         else:
             height = push_halves(trees, blocks, pose, nodes, best.axis, limit * limit, scratch, height)
     return best
+
+
+@strict_step
+def around_leaf(tree: TriangleTree, blocks: TriangleBlocks, leaf: int) -> int:
+    """The largest node above a leaf whose triangles are put to all of another."""
+    node = leaf
+    while node > 0 and blocks.counts[tree.parent[node]] <= BLOCK:
+        node = tree.parent[node]
+    return node
 
 
 @strict_step
