@@ -20,9 +20,13 @@ from harness.kernel_cache import forgiving, own_cache
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+# Said wherever nothing may be relaxed: numba has what does not say so take over what its first caller may relax.
+STRICT: dict[str, Any] = {"fastmath": False}
+
+
 def kernel(function: Function) -> Function:
     """Compile a function over arrays, keeping its type for the checker. Other threads run while it does."""
-    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "nogil": True}
+    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "nogil": True, **STRICT}
     return cast(Function, _Waiting(function, lambda: _kept(function, **options)))
 
 
@@ -31,7 +35,7 @@ def inner(function: Function) -> Function:
 
     numba counts references to arrays at every real call, which made loops over neighbours four times slower.
     """
-    return cast(Function, _Waiting(function, lambda: _njit(error_model="numpy", inline="always")(function)))
+    return cast(Function, _Waiting(function, lambda: _njit(error_model="numpy", inline="always", **STRICT)(function)))
 
 
 # What may be relaxed in an event loop. None of it reorders a sum: `contract` fuses a product into a sum, `arcp` and
@@ -64,7 +68,7 @@ def strict_step(function: Function) -> Function:
 
     Like every step it counts no references: it may read and write arrays that it is given, and makes and returns none.
     """
-    return cast(Function, _Waiting(function, lambda: _widened(_njit(**_STEP)(function))))
+    return cast(Function, _Waiting(function, lambda: _widened(_njit(**STRICT, **_STEP)(function))))
 
 
 def instruction(code: Callable[..., Any], plain: Callable[..., Any] | None = None) -> Any:
@@ -140,7 +144,7 @@ def first_or_call(context: Any, body: Callable[..., Any] | None, *kinds: Any) ->
 @cache
 def _to_be_typed(body: Callable[..., Any]) -> Any:
     """A function as numba types it; kept, because numba's own types do not keep it."""
-    return _njit(error_model="numpy")(body)
+    return _njit(error_model="numpy", **STRICT)(body)
 
 
 _lock = RLock()
