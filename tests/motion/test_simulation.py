@@ -313,9 +313,11 @@ def test_mixed_sizes_never_come_to_overlap(seed, ratio, response):
     for k in np.argsort(-radii):
         if all(np.linalg.norm(positions[k] - positions[m]) > radii[k] + radii[m] for m in kept):
             kept.append(int(k))
-    simulation = Simulation(
-        positions[kept], rng.normal(size=(len(kept), 3)), radii[kept], radii[kept] ** 3, half, response
-    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(grids, "MOST_AROUND", 0.0)  # each size class has a grid, however few its spheres are
+        simulation = Simulation(
+            positions[kept], rng.normal(size=(len(kept), 3)), radii[kept], radii[kept] ** 3, half, response
+        )
     for _ in range(20):
         simulation.advance(np.inf, max_events=150)
         x, r = simulation.positions, radii[kept]

@@ -3,15 +3,12 @@
 There is a grid for each size class, and a sphere stands only in its own. It crosses into the next cell by an event of
 its own, and then searches only the layer of cells that are new to it.
 
-A sphere finds larger ones in the 27 cells around it in their grids, whenever it predicts. It finds smaller ones in the
-cells of theirs that a ball around it covers, as far as it can fly before it predicts again (`margin`). A cell of a
-coarser grid is at least the two radii, the finer cell and two margins wide: then a small sphere that comes into that
-ball from outside crosses into its last cell while the large one is among its 27.
+Spheres of different grids find each other as `harness.motion.predictive.larger` says.
 """
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -179,23 +176,6 @@ def gather_wide(cells: Cells, grid: Record, block: Block, found: Indices) -> int
             found[np.uintp(n)] = p
             n += p != empty
         begin = end
-    return n
-
-
-@step
-def gather_ball(cells: Cells, grid: Record, x: float, y: float, z: float, reach: float, found: Indices, n: int) -> int:
-    """Append the spheres of all cells that come within `reach` of a point."""
-    for ix in range(index(grid, 0, x - reach), index(grid, 0, x + reach) + 1):
-        gap_x = distance_to_cell(grid, 0, ix, x)
-        for iy in range(index(grid, 1, y - reach), index(grid, 1, y + reach) + 1):
-            gap_y = distance_to_cell(grid, 1, iy, y)
-            rest = reach * reach - gap_x * gap_x - gap_y * gap_y
-            if rest < 0.0:
-                continue
-            half = sqrt(rest)
-            column = cell_number(grid, ix, iy, 0)
-            for iz in range(index(grid, 2, z - half), index(grid, 2, z + half) + 1):
-                n = gather_cell(cells, column + iz, found, n)
     return n
 
 

@@ -13,7 +13,7 @@ class Event(IntEnum):
     PAIR = 1
     WALL = 2
     CROSSING = 3  # into the next cell
-    RENEWAL = 4  # of the neighbour list, or of the candidates in finer grids
+    RENEWAL = 4  # of the neighbour list, or of where it is noted in finer grids
     NOTHING = 5
 
 
@@ -50,6 +50,14 @@ class Task(IntEnum):
     EXTEND = 1  # look only at the candidates that are new to it
     KEEP = 2  # nothing: its candidates stand
     GIVE_UP = 3  # a neighbour list is full
+
+
+class CellTask(IntEnum):
+    """What is done at a cell that a larger sphere is near."""
+
+    GATHER = 0  # list the spheres in it
+    NOTE = 1  # note the larger sphere there
+    REMOVE = 2  # and no longer
 
 
 class Stop(IntEnum):

@@ -21,9 +21,10 @@ from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
 from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
 from harness.motion.predictive.ignored import without_ignored
+from harness.motion.predictive.larger import note_all, note_anew
 from harness.motion.predictive.lookahead import prefetch_ahead, prefetch_next
-from harness.motion.predictive.neighbours import renew, time_to_leave
-from harness.motion.predictive.numerics import time_to_plane
+from harness.motion.predictive.neighbours import renew
+from harness.motion.predictive.numerics import time_to_leave, time_to_plane
 from harness.motion.predictive.pair_search import first_onset, first_touch
 from harness.motion.predictive.state import NOBODY, World
 
@@ -39,14 +40,15 @@ def populate(world: World, placed: bool) -> None:
             insert(world.cells, world.spheres.schedule, k)
         else:
             insert_by_position(world.cells, world.spheres, k)
+    note_all(world, placed)
     tournament.rebuild(world.queue, world.spheres.schedule)
 
 
-def event_loop(deep: bool) -> Callable[[World, float, int], Stop]:
-    """The event loop, for so many spheres that the event queue is out of the caches (`deep`), or for fewer.
+def event_loop(deep: bool, several: bool) -> Callable[[World, float, int], Stop]:
+    """The event loop, for so many spheres that the event queue is out of the caches (`deep`), for `several` grids.
 
     Each is compiled by itself, as code for prefetching that did not run cost small numbers of spheres 2 to 9 % of the
-    rate.
+    rate, and code for several grids 3 %.
     """
 
     @loop
@@ -69,15 +71,15 @@ def event_loop(deep: bool) -> Callable[[World, float, int], Stop]:
             if defer_if_stalled(world, k, now):
                 continue
             begin(world, now)
-            after = process_event(world, k, now)
+            after = process_event(world, k, now, several)
             if after.task == Task.GIVE_UP:
                 return Stop.NO_ROOM
             # One call for the one or two spheres concerned, as the search is inlined wherever it is called
             for turn in range(2):
                 who = k if turn == 0 else after.other
                 if who >= 0:
-                    predict(world, who, now, after)
-                    schedule_next(world, who, now)
+                    predict(world, who, now, after, several)
+                    schedule_next(world, who, now, several)
                     if rules.prefetching:
                         prefetch_ahead(world, who, deep)
                     else:
@@ -86,12 +88,14 @@ def event_loop(deep: bool) -> Callable[[World, float, int], Stop]:
     return fly
 
 
-fly = event_loop(deep=False)
-fly_prefetching_deep = event_loop(deep=True)
+fly = event_loop(deep=False, several=False)
+fly_deep = event_loop(deep=True, several=False)
+fly_several = event_loop(deep=False, several=True)
+fly_several_deep = event_loop(deep=True, several=True)
 
 
 @step
-def process_event(world: World, k: int, now: float) -> FollowUp:
+def process_event(world: World, k: int, now: float, several: bool) -> FollowUp:
     """Carry out the event that sphere k holds."""
     schedule, counts = world.spheres.schedule, world.totals.counts[0]
     own = schedule[k]
@@ -118,11 +122,13 @@ def process_event(world: World, k: int, now: float) -> FollowUp:
         counts.list_renewals += 1
         if not renew(world, k):
             task = Task.GIVE_UP
+    elif several and own.kind == Event.RENEWAL:
+        note_anew(world, k, now)
     return FollowUp(task, other, layer)
 
 
 @step
-def predict(world: World, k: int, now: float, after: FollowUp) -> None:
+def predict(world: World, k: int, now: float, after: FollowUp, several: bool) -> None:
     """Find sphere k's next pair event.
 
     After a crossing its pair candidate stands, and only the new layer of cells is searched.
@@ -134,7 +140,7 @@ def predict(world: World, k: int, now: float, after: FollowUp) -> None:
         count = int(world.lists.members[k].count)
         candidates = world.lists.members[k].who[:]
     else:
-        count = without_ignored(world, k, candidates, gather_candidates(world, k, now, after.layer))
+        count = without_ignored(world, k, candidates, gather_candidates(world, k, now, after.layer, several))
         counts.pair_tests -= after.task == Task.PREDICT  # itself among them: zero gap, no hit
     counts.pair_tests += count
     if world.rules.response == ResponseCode.NONE:
@@ -154,7 +160,7 @@ def predict(world: World, k: int, now: float, after: FollowUp) -> None:
 
 
 @step
-def schedule_next(world: World, k: int, now: float) -> None:
+def schedule_next(world: World, k: int, now: float, several: bool) -> None:
     """Schedule the earliest of sphere k's pair candidate, walls, cell faces and renewal."""
     cells, rules = world.cells, world.rules
     motion, own = world.spheres.motions[k], world.spheres.schedule[k]
@@ -184,8 +190,10 @@ def schedule_next(world: World, k: int, now: float) -> None:
             met = 2 * axis + up
     renewal = inf
     if rules.neighbours == NeighbourSearch.LISTS:
-        renewal = time_to_leave(world.lists, world.spheres.motions, k, rules.skin)
-    elif cells.grids.size > 1:
+        # A little early, so that rounding cannot make it late
+        anchors = world.lists.anchors
+        renewal = time_to_leave(anchors[k, 0], anchors[k, 1], anchors[k, 2], motion, 0.2499 * rules.skin * rules.skin)
+    elif several:
         renewal = cells.renewals[k]
     if renewal < due:
         due = renewal

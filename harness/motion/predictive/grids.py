@@ -1,7 +1,6 @@
 """Grids of cells: one for each size class of the spheres.
 
-A cell is about as wide as the diameter of the largest sphere of its class. A cell of a coarser grid is at least the two
-radii, the finer cell and two margins wide: see `harness.motion.predictive.cells`.
+A cell is at least as wide as the diameter of the largest sphere of its class.
 """
 
 from __future__ import annotations
@@ -12,14 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.motion.predictive.order import REORDERED_FROM
-from harness.motion.predictive.state import GRID, Cells, Floats
+from harness.motion.predictive.state import ANCHOR, GRID, LARGER, Cells, Floats, Records
 
-# Radii of one class are within this ratio.
-CLASS_RATIO = 3.0
+# Radii of one class are within this ratio, and classes are joined where not more than so many spheres of both are in 27
+# cells.
+CLASS_RATIO, MOST_AROUND = 3.0, 60.0
 # Cells of a grid for each of its spheres, at most. Eight still are as fast as fewer at packing .01, while all is in the
-# cache. Of many small spheres between large ones, two: they cross less often, and the large ones are asked about anew
-# after each crossing; with 10^4 the rate is 1.2 times as high.
-CELLS_PER_SPHERE, MIXED_CELLS_PER_SPHERE = 8, 2
+# cache. Of many small spheres between large ones, four: there is nothing in most of the others. With 10^4 the rate is
+# 1.2 times that with two, and 1.05 times that with six.
+CELLS_PER_SPHERE, MIXED_CELLS_PER_SPHERE = 8, 4
+# Where there are no more of them than this for each sphere, the cells around the larger ones are kept.
+NOTED_PER_SPHERE = 16
 # Cells are wider than they must be by this fraction, so that rounding at a crossing cannot lose a neighbour.
 SLACK = 1e-6
 
@@ -30,40 +32,76 @@ def empty_grids(half_box: Floats, radii: Floats, skin: float) -> Cells:
     Parameters
     ----------
     half_box : (3,) m
-    radii : (n,) m
+    radii : (n,) m, by internal number
     skin : how much wider than a diameter the cells must be, m (for neighbour lists)
     """
-    classes = size_classes(radii)
+    classes = size_classes(radii, half_box)
     grids = np.zeros(int(classes.max(initial=0)) + 1, dtype=GRID)
-    needed = np.zeros(3)
-    finer = 0.0
-    width = np.inf  # of the narrowest cell of a finer grid
+    largest = np.array([radii[classes == level].max(initial=0.0) for level in range(len(grids))])
+    width = 0.0
     for level in reversed(range(len(grids))):
-        members = radii[classes == level]
-        largest = float(members.max(initial=0.0))
-        # few small spheres stand in wide cells: a margin of their own size would be flown through again and again
-        margin = max(0.1 * largest, 0.5 * finer, 0.25 * width) if finer else 0.0
-        least = np.maximum(2.0 * largest + skin, needed + largest + 2.0 * margin if finer else 0.0)
-        many_of_several = len(grids) > 1 and len(members) >= REORDERED_FROM
-        most = (MIXED_CELLS_PER_SPHERE if many_of_several else CELLS_PER_SPHERE) * len(members) + 27
+        # as many cells as suit the larger spheres too, so that only few of these are near each of them
+        no_smaller = np.count_nonzero(classes <= level)
+        many_of_several = len(grids) > 1 and no_smaller >= REORDERED_FROM
+        most = (MIXED_CELLS_PER_SPHERE if many_of_several else CELLS_PER_SPHERE) * no_smaller + 27
+        least = np.full(3, 2.0 * largest[level] + skin)
         shape = cell_counts(half_box, least * (1.0 + SLACK) + 1e-14 * half_box.max(), most)
-        side = 2.0 * half_box / shape
-        grids[level] = shape, 0, -half_box, side, largest, margin
-        finer, width = max(finer, largest), min(width, float(side.min()))
-        needed = np.maximum(needed, side + largest)
+        finer = largest[level + 1] if level + 1 < len(grids) else 0.0
+        margin = max(0.1 * largest[level], 0.5 * finer, 0.5 * width)
+        grids[level] = shape, 0, -half_box, 2.0 * half_box / shape, largest[level], margin
+        width = float(grids[level]["side"].min())
     sizes = grids["shape"].prod(axis=1)
     grids["first"] = np.concatenate(([0], np.cumsum(sizes)[:-1]))
     count = len(radii)
+    anchors, room = empty_anchors(grids, radii, classes)
     return Cells(
         heads=np.full(int(sizes.sum()), count, dtype=np.uint32),
         following=np.full(count + 1, count, dtype=np.uint32),
         grids=grids,
+        larger=np.zeros(int(sizes.sum()) if len(grids) > 1 else 0, dtype=LARGER),
+        anchors=anchors,
+        noted_at=np.zeros(room, dtype=np.uint32),
         renewals=np.full(count, np.inf),
     )
 
 
-def size_classes(radii: Floats) -> NDArray[np.int32]:
-    """(n,) class of each sphere, 0 the largest; classes without a sphere are left out."""
+def empty_anchors(grids: Records, radii: Floats, classes: NDArray[np.int32]) -> tuple[Records, int]:
+    """Anchors of spheres that are not noted yet, and the room for the cells at which they will be."""
+    anchors = np.zeros(len(radii) if len(grids) > 1 else 0, dtype=ANCHOR)
+    cells = np.zeros(len(anchors), dtype=np.int64)
+    for own in range(len(grids) - 1):
+        members = np.flatnonzero(classes == own)
+        for grid in grids[own + 1 :]:
+            reach = radii[members] + grid["largest"] + grids[own]["margin"]
+            along = np.minimum(2.0 * reach[:, None] / grid["side"] + 2.0, grid["shape"])
+            cells[members] += along.astype(np.int64).prod(axis=1)
+    total = int(cells.sum())
+    if total > NOTED_PER_SPHERE * len(radii):
+        anchors["first"] = -1
+        return anchors, 0
+    anchors["first"] = np.cumsum(cells) - cells
+    return anchors, total
+
+
+def size_classes(radii: Floats, half_box: Floats) -> NDArray[np.int32]:
+    """(n,) class of each sphere, 0 the largest. Spheres share a class as far as few enough are around each of them."""
+    classes = ratio_classes(radii)
+    merged = np.zeros(int(classes.max(initial=0)) + 1, dtype=np.int32)
+    count, largest = 0, 0.0
+    for level in range(len(merged)):
+        members = radii[classes == level]
+        count, largest = count + len(members), max(largest, float(members.max(initial=0.0)))
+        around = 27.0 * count * (2.0 * largest) ** 3 / (8.0 * half_box.prod())
+        merged[level] = merged[max(level - 1, 0)]
+        if level > 0 and around > MOST_AROUND:
+            merged[level] += 1
+            count, largest = len(members), float(members.max(initial=0.0))
+    joined: NDArray[np.int32] = merged[classes]
+    return joined
+
+
+def ratio_classes(radii: Floats) -> NDArray[np.int32]:
+    """(n,) class of each sphere by size alone, 0 the largest; classes without a sphere are left out."""
     classes = np.zeros(len(radii), dtype=np.int32)
     rest = radii
     while len(rest := rest[rest * CLASS_RATIO < rest.max(initial=0.0)]):

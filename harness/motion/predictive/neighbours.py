@@ -7,14 +7,12 @@ are corrected.
 
 from __future__ import annotations
 
-from math import inf, sqrt
-
 import numpy as np
 
 from harness.kernel import step
 from harness.motion.predictive.cells import AROUND, block, gather_wide, insert_by_position, remove
 from harness.motion.predictive.ignored import without_ignored
-from harness.motion.predictive.state import CAPACITY, Lists, Record, Records, World
+from harness.motion.predictive.state import CAPACITY, Lists, Record, World
 from harness.prefetch import prefetch
 
 # How many candidates ahead anchors are read into the cache.
@@ -74,16 +72,3 @@ def remove_neighbour(neighbours: Record, k: int) -> None:
             neighbours.who[m] = neighbours.who[last]
             break
     neighbours.count = last
-
-
-@step
-def time_to_leave(lists: Lists, motions: Records, k: int, skin: float) -> float:
-    """When sphere k will be half a skin away from its anchor, on its own clock; inf at rest."""
-    anchors, position, velocity = lists.anchors, motions[k].position, motions[k].velocity
-    x, y, z = position[0] - anchors[k, 0], position[1] - anchors[k, 1], position[2] - anchors[k, 2]
-    speed = velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]
-    outward = x * velocity[0] + y * velocity[1] + z * velocity[2]
-    # A little early, so that rounding cannot make it late
-    left = 0.2499 * skin * skin - (x * x + y * y + z * z)
-    root = sqrt(max(outward * outward + speed * left, 0.0))
-    return motions[k].time + max((root - outward) / speed, 0.0) if speed > 0.0 else inf

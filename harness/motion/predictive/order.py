@@ -53,6 +53,9 @@ def reorder(world: World) -> None:
         lists.anchors[:] = lists.anchors[order]
         lists.members[:] = lists.members[order]
         lists.members["who"] = moved_to[np.minimum(lists.members["who"], count - 1)]
+    if len(cells.anchors):
+        cells.anchors[:] = cells.anchors[order]
+        cells.larger["count"] = 0
     cells.heads[:] = count
 
 

@@ -63,11 +63,11 @@ def prepare(start: InitialState, rules: Rules, ignored: Pairs, record: bool, sta
     schedule["partner"] = NOBODY
     schedule["kind"] = Event.UNSCHEDULED
     schedule["label"] = order
-    schedule["size_class"] = size_classes(start.radii)[order]
+    schedule["size_class"] = size_classes(start.radii, start.half_box)[order]
     return World(
         spheres=Spheres(motions, schedule, contacts=no_contacts(n)),
         queue=unscheduled(n),
-        cells=empty_grids(start.half_box, start.radii, rules.skin),
+        cells=empty_grids(start.half_box, motions["radius"], rules.skin),
         lists=empty_lists(motions, rules.neighbours),
         ignored=ignored_by_label(n, ignored),
         rules=rules,

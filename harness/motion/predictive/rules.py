@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from harness.motion.predictive.codes import NeighbourSearch, ResponseCode
-from harness.motion.predictive.grids import size_classes
+from harness.motion.predictive.grids import ratio_classes
 from harness.motion.predictive.initial import InitialState
 from harness.motion.predictive.order import REORDERED_FROM
 from harness.motion.predictive.state import Rules
@@ -48,7 +48,7 @@ TOUCHING = 1e-15
 
 def choose_search(start: InitialState, response: str) -> str:
     """'lists' for many spheres of one size class, densely packed, else 'cells'."""
-    one_size = int(size_classes(start.radii).max(initial=0)) == 0
+    one_size = int(ratio_classes(start.radii).max(initial=0)) == 0
     dense = len(start) >= LISTS_COUNT and start.packing >= LISTS_PACKING
     return "lists" if dense and one_size and response != "none" else "cells"
 

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from harness.arrays import Pairs
 from harness.errors import InputError
 from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
-from harness.motion.predictive.flight import fly, fly_prefetching_deep, populate
-from harness.motion.predictive.grids import empty_grids, size_classes
+from harness.motion.predictive.flight import fly, fly_deep, fly_several, fly_several_deep, populate
+from harness.motion.predictive.grids import empty_grids, ratio_classes
 from harness.motion.predictive.initial import check
 from harness.motion.predictive.order import labelled, positions_at, reorder
 from harness.motion.predictive.preparation import empty_lists, prepare
@@ -75,7 +75,7 @@ class Simulation:
         if not 0.0 <= restitution <= 1.0:
             raise InputError(f"restitution must lie between 0 and 1, not {restitution:g}")
         search = search or choose_search(start, response)
-        if search not in SEARCHES or (search == "lists" and size_classes(start.radii).max(initial=0) > 0):
+        if search not in SEARCHES or (search == "lists" and ratio_classes(start.radii).max(initial=0) > 0):
             raise InputError(f'search "{search}" is not possible for these spheres')
         self._chunks: list[NDArray[np.void]] = []
         self._states: list[NDArray[np.void]] = []
@@ -232,7 +232,10 @@ class Simulation:
         return chunk
 
     def _fly(self, until: float, budget: int) -> Stop:
-        return (fly if len(self) < DEEP_PREFETCH_COUNT else fly_prefetching_deep)(self._world, until, budget)
+        deep, several = len(self) >= DEEP_PREFETCH_COUNT, len(self._world.cells.grids) > 1
+        if several:
+            return (fly_several_deep if deep else fly_several)(self._world, until, budget)
+        return (fly_deep if deep else fly)(self._world, until, budget)
 
     def _make_room(self) -> None:
         """Go on with cells from this moment: more spheres are on top of each other than a neighbour list holds."""

@@ -18,6 +18,7 @@ from harness.motion.predictive.codes import Event, Phase, ResponseCode, Stop, Ta
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
 from harness.motion.predictive.hits import advance_to_plane, hit_pair, note_onset, reflect_from_wall
 from harness.motion.predictive.ignored import without_ignored
+from harness.motion.predictive.larger import note_anew
 from harness.motion.predictive.narrow_search import search_pair, search_wall
 from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
@@ -97,8 +98,11 @@ def process_event(solid: SolidWorld, k: int, now: float) -> FollowUp:
         task = Task.EXTEND
         layer = cross(world.cells, schedule, k)
         counts.cell_crossings += 1
+    elif own.kind == Event.UNSCHEDULED:
+        task = Task.PREDICT
     else:
-        task = Task.PREDICT if own.kind == Event.UNSCHEDULED else Task.EXTEND
+        note_anew(world, k, now)
+        task = Task.EXTEND
     return FollowUp(task, other, layer)
 
 
@@ -150,7 +154,8 @@ def predict(solid: SolidWorld, k: int, now: float, after: FollowUp) -> None:
         windows.heads[k] = NOBODY
         open_wall_windows(solid, k, now)
         world.totals.counts[0].predictions += 1
-    count = without_ignored(world, k, world.scratch.found, gather_candidates(world, k, now, after.layer))
+    count = gather_candidates(world, k, now, after.layer, world.cells.grids.size > 1)
+    count = without_ignored(world, k, world.scratch.found, count)
     world.totals.counts[0].pair_tests += count - (after.layer.axis == ALL)
     for m in range(count):
         p = int(world.scratch.found[m])

@@ -60,7 +60,21 @@ GRID = np.dtype(
         ("low", np.float64, 3),  # m, where it begins
         ("side", np.float64, 3),  # m, of a cell
         ("largest", np.float64),  # m, radius
-        ("margin", np.float64),  # m, how far a sphere flies before it searches finer grids again
+        ("margin", np.float64),  # m, how far a sphere flies before it is noted anew at the cells of finer grids
+    ],
+    align=True,
+)
+
+# The larger spheres near a cell, of coarser grids: half a cache line. More than these are not noted but counted.
+LARGER_CAPACITY = 7
+LARGER = np.dtype([("count", np.uint32), ("who", np.uint32, LARGER_CAPACITY)], align=True)
+
+# Where a sphere was noted at the cells of finer grids, and those cells, if there is room for them.
+ANCHOR = np.dtype(
+    [
+        ("position", np.float64, 3),  # m
+        ("first", np.int32),  # place in `Cells.noted_at` of the first cell, -1: there is no room
+        ("count", np.int32),  # of cells
     ],
     align=True,
 )
@@ -171,7 +185,10 @@ class Cells(NamedTuple):
     heads: Indices  # (cells of all grids,) first sphere, n = empty
     following: Indices  # (n + 1,) the next sphere in the same cell
     grids: Records  # (grids,) of GRID
-    renewals: Floats  # (n,) s, when a sphere has flown its margin and must search finer grids again
+    larger: Records  # (cells of all grids,) of LARGER, the spheres of coarser grids; none of a single grid
+    anchors: Records  # (n,) of ANCHOR; none of a single grid
+    noted_at: Indices  # cells at which spheres are noted
+    renewals: Floats  # (n,) s, when a sphere is its margin away from its anchor and must be noted anew
 
 
 class Lists(NamedTuple):
