@@ -85,6 +85,7 @@ def schedule(
     order : the source of randomness
     retry : whether a run that did not end well counts as missing
     """
+    failed = {key for key, ends in status.items() if any(ended != "ok" for ended in ends.values())}
     jobs: list[Job] = []
     kept: dict[tuple[str, int], str] = {}
     for repeat in range(max((experiment.measure.repeats for experiment in experiments), default=0)):
@@ -100,7 +101,7 @@ def schedule(
                     block.setdefault((key, False), Job(experiment, point, key, repeat))
                 else:
                     kept[key, repeat] = ended
-            chosen = _controlled_point(experiment, points, repeat)
+            chosen = _controlled_point(experiment, [p for p in points if keys[id(p)] not in failed], repeat)
             if chosen is not None and (keys[id(chosen)], repeat) not in controlled:
                 key = keys[id(chosen)]
                 block.setdefault((key, True), Job(experiment, chosen, key, repeat, control=True))
@@ -109,9 +110,10 @@ def schedule(
 
 
 def _controlled_point(experiment: Experiment, points: Sequence[Point], repeat: int) -> Point | None:
-    """The point whose run of this repeat is done twice: another for each repeat, at equal steps over the experiment.
+    """Which of these points has its run of this repeat done twice: another for each, at equal steps over all.
 
-    None where nothing is compared, or with too few repeats for an interval.
+    None where nothing is compared, or with too few repeats for an interval. A point that has failed is not among them,
+    as nothing of a failed run can be compared.
     """
     repeats = experiment.measure.repeats
     compares = bool(set(experiment.swept).intersection(METHOD_LEAVES)) or any(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -180,7 +180,8 @@ def sweep(
     InputError
         If the database cannot be written to, or no point matches `selection`.
     """
-    work = work_of(experiments, meshes, database.history, command=command, selection=selection or RunSelection())
+    selection = selection or RunSelection()
+    work = work_of(experiments, meshes, database.history, command=command, selection=selection)
     machine = machine_facts()
     machine["fingerprint"] = fingerprint(machine)
     number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions(packages()))
@@ -190,11 +191,19 @@ def sweep(
     if executor is None:
         compile_ahead([job.point for job in work.schedule.jobs])
     with executor or LocalExecutor() as opened:
-        for finished in opened.run(work.schedule.jobs, meshes, progress.before):
-            _keep(database, number, finished)
-            _count(summary, finished)
-            work.estimate.learn(finished.job, finished.report.conditions.get("seconds", 0.0))
-            progress.after(finished.job, finished.report)
+
+        def do(jobs: Iterable[Job]) -> None:
+            for finished in opened.run(jobs, meshes, progress.before):
+                _keep(database, number, finished)
+                _count(summary, finished)
+                work.estimate.learn(finished.job, finished.report.conditions.get("seconds", 0.0))
+                progress.after(finished.job, finished.report)
+
+        do(work.schedule.jobs)
+        if any(status != "ok" for status in summary.done):
+            # now it is known which points fail, and can be no control: the others of their experiments stand in
+            found = work_of(experiments, meshes, database.history, command=command, selection=selection)
+            do([job for job in found.schedule.jobs if job.control])
         for finished in opened.run(_recordings(experiments, work.keys, database), meshes, lambda _: None):
             if finished.report.recording is not None:
                 database.add_recording(finished.job.key, finished.report.recording)
