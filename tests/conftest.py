@@ -47,6 +47,7 @@ LONGEST_FILES = (
     "compare/test_document.py",
     "truth/test_truth_ask.py",
     "test_child_process.py",
+    "test_docstring_examples.py",
     "browser/test_pages.py",
     "runner/test_odd_environments.py",
     "runner/test_servers.py",

@@ -14,7 +14,13 @@ MODULES = [
 ]
 
 
-@pytest.mark.parametrize("module", MODULES)
+# its examples sweep, run and trace
+SLOW = ("harness.__init__",)
+
+
+@pytest.mark.parametrize(
+    "module", [pytest.param(module, marks=pytest.mark.slow if module in SLOW else ()) for module in MODULES]
+)
 def test_an_example_gives_what_it_says(module):
     found = import_module(module)
     # a compiled function has the docstring of its source, but is none that doctest looks for

@@ -15,6 +15,7 @@ SLOW = (
     *("drops-at-random", "random-verdicts", "drops-neighbours", "last-frame", "halves-hulls", "inflates-by-1e-3"),
     *("spheres-for-all", "sees-all", "doubles", "unsorted", "turned-round", "out-of-range"),
     *("floats", "tolerates-nan", "raises", "blind", "hulls-inside-out", "hulls-of-nobody", "tolerates-by-lot"),
+    *("learns", "halves-without-faces"),
 )
 
 
