@@ -14,6 +14,7 @@ PACKAGE = Path(__file__).parents[1] / "harness"
 BASE = {
     "arrays",
     "child_process",
+    "descendants",
     "cpu_time",
     "errors",
     "installed",

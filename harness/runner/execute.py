@@ -11,8 +11,8 @@ from math import isfinite
 
 from harness.backends import registry
 from harness.backends.contract import ContractError
-from harness.child_process import cpu_time_of_descendants
 from harness.cpu_time import charged
+from harness.descendants import cpu_time_of_descendants
 from harness.experiment.experiment import Point
 from harness.measure.clocks import Clock
 from harness.measure.metrics import from_outcome

@@ -168,7 +168,13 @@ def gather_wide(cells: Cells, grid: Record, block: Block, found: Indices) -> int
                 p = cells.heads[np.uintp(cell + z)]
                 found[np.uintp(n)] = p
                 n += p != empty
-    begin = 0
+    return gather_following(cells, found, 0, n)
+
+
+@step
+def gather_following(cells: Cells, found: Indices, begin: int, n: int) -> int:
+    """Append those that follow in their cells, where the first of each cell stand in the list from `begin` on."""
+    empty = cells.following.size - 1
     while begin < n:
         end = n
         for m in range(begin, end):

@@ -17,8 +17,8 @@ from harness.motion.predictive.state import ANCHOR, GRID, LARGER, Cells, Floats,
 # cells.
 CLASS_RATIO, MOST_AROUND = 3.0, 60.0
 # Cells of a grid for each of its spheres, at most. Eight still are as fast as fewer at packing .01, while all is in the
-# cache. Of many small spheres between large ones, four: there is nothing in most of the others. With 10^4 the rate is
-# 1.2 times that with two, and 1.05 times that with six.
+# cache. Of many small spheres between large ones, four: with 10^4 the rate is 1.05 to
+# 1.2 times that with two, and six are no better.
 CELLS_PER_SPHERE, MIXED_CELLS_PER_SPHERE = 8, 4
 # Where there are no more of them than this for each sphere, the cells around the larger ones are kept.
 NOTED_PER_SPHERE = 16

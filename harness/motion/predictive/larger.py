@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from harness.kernel import step
-from harness.motion.predictive.cells import cell_number, distance_to_cell, gather_cell, index
+from harness.motion.predictive.cells import cell_number, distance_to_cell, gather_cell, gather_following, index
 from harness.motion.predictive.codes import CellTask
 from harness.motion.predictive.numerics import time_to_leave
 from harness.motion.predictive.state import LARGER_CAPACITY, Cells, Record, World
@@ -125,14 +125,7 @@ def visit_noted(world: World, task: int, k: int, n: int) -> int:
             n += p != empty
         else:
             no_longer(cells.larger[np.uintp(cell)], k)
-    while begin < n:
-        end = n
-        for m in range(begin, end):
-            p = cells.following[found[np.uintp(m)]]
-            found[np.uintp(n)] = p
-            n += p != empty
-        begin = end
-    return n
+    return gather_following(cells, found, begin, n)
 
 
 @step
