@@ -57,6 +57,8 @@ def locate_mesh(reference: str, beside: Path) -> Path:
     if outside:
         where = f"the package {package}" if package else "the experiment's folder and the folders of meshes"
         raise InputError(f"the mesh {shown(reference)} lies outside of {where}")
+    if any(_is_folder(root, relative) for root in roots):
+        raise InputError(f"{shown(reference)} is a folder, not a mesh file")
     prefix = f"{PACKAGE}{package}/" if package else ""
     hint = near(reference, (prefix + name for root in roots for name in _meshes_in(root)))
     where = f"in the package {package}" if package else "beside the experiment or in meshes/"
@@ -86,6 +88,13 @@ def _file(root: Path, relative: str) -> Path | None:
         return path.resolve() if path.is_file() else None
     except (OSError, ValueError, RuntimeError):  # a name too long, with a zero in it, or links that go round in circles
         return None
+
+
+def _is_folder(root: Path, relative: str) -> bool:
+    try:
+        return (root / relative).is_dir()
+    except (OSError, ValueError, RuntimeError):
+        return False
 
 
 def _meshes_in(root: Path) -> Iterator[str]:
