@@ -10,7 +10,7 @@ from harness.backends.protocol import Backend, NearPairs, approximations
 from harness.compare.poses import Frame, Pose
 from harness.compare.question import Question
 from harness.compare.witnesses import misplaced
-from harness.methods.at_poses import Queried
+from harness.methods.at_poses import QueryAtPoses
 from harness.methods.impact_times import FrameMotion
 from harness.methods.registry import method_of
 from harness.scene.scene import Scene
@@ -44,7 +44,7 @@ class QueryAnswers:
     misplaced: tuple[tuple[int, int], str] | None = None
 
     def __init__(self, name: MethodName, question: Question) -> None:
-        self._name, self._asked = name, Queried(name, question.tolerance, question.within)
+        self._name, self._asked = name, QueryAtPoses(name, question.tolerance, question.within)
         self.shapes = self._asked.shapes
         self._last = 0
 
