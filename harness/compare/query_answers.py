@@ -16,7 +16,7 @@ from harness.methods.registry import method_of
 from harness.scene.scene import Scene
 from harness.vocabulary import MethodName, Shape
 
-Told: TypeAlias = dict[tuple[int, int], float]
+PairAnswers: TypeAlias = dict[tuple[int, int], float]
 """By pair i < j: the gap, m, of "distance"; s after the start of the frame, of "impact"; 0 where no number is asked."""
 
 
@@ -66,7 +66,7 @@ class QueryAnswers:
         self._asked.load(scene)
         self._scene = scene
 
-    def told(self, pose: Pose) -> Told:
+    def answers_at(self, pose: Pose) -> PairAnswers:
         """What it tells of every pair that it reports."""
         if isinstance(pose, Frame):
             motion, self._last = self._motion(pose), 0
