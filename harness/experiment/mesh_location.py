@@ -57,8 +57,8 @@ def locate_mesh(reference: str, beside: Path) -> Path:
     if outside:
         where = f"the package {package}" if package else "the experiment's folder and the folders of meshes"
         raise InputError(f"the mesh {shown(reference)} lies outside of {where}")
-    if any(_is_folder(root, relative) for root in roots):
-        raise InputError(f"{shown(reference)} is a folder, not a mesh file")
+    if reason := next(filter(None, (_no_file(root, relative) for root in roots)), None):
+        raise InputError(f"{shown(reference)} is {reason}, not a mesh file")
     prefix = f"{PACKAGE}{package}/" if package else ""
     hint = near(reference, (prefix + name for root in roots for name in _meshes_in(root)))
     where = f"in the package {package}" if package else "beside the experiment or in meshes/"
@@ -90,11 +90,17 @@ def _file(root: Path, relative: str) -> Path | None:
         return None
 
 
-def _is_folder(root: Path, relative: str) -> bool:
+def _no_file(root: Path, relative: str) -> str | None:
+    """What stands there that is no file, if anything does."""
     try:
-        return (root / relative).is_dir()
-    except (OSError, ValueError, RuntimeError):
-        return False
+        path = root / relative
+        if path.is_dir():
+            return "a folder"
+        if path.exists():
+            return "a pipe or a device"
+        return "a link that leads to no file" if path.is_symlink() else None
+    except (OSError, ValueError, RuntimeError):  # as in `_file`
+        return None
 
 
 def _meshes_in(root: Path) -> Iterator[str]:

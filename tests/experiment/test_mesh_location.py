@@ -1,5 +1,6 @@
 """Meshes are found where they may be, and nowhere else."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -86,3 +87,16 @@ def test_only_files_that_can_be_read_are_suggested(places: Path) -> None:
     assert "did you mean" not in refused("duckling.obj")
     (places / "lab" / "duckling.stl").write_text("")
     assert 'did you mean "duckling.stl"?' in refused("duckling.obj")
+
+
+def test_what_stands_there_and_is_no_file_is_called_what_it_is(tmp_path):
+    (tmp_path / "folder.obj").mkdir()
+    os.mkfifo(tmp_path / "pipe.obj")
+    (tmp_path / "gone.obj").symlink_to("nowhere")
+    for name, what in (
+        ("folder", "a folder"),
+        ("pipe", "a pipe or a device"),
+        ("gone", "a link that leads to no file"),
+    ):
+        with pytest.raises(InputError, match=f'^"{name}.obj" is {what}, not a mesh file$'):
+            locate_mesh(f"{name}.obj", tmp_path)

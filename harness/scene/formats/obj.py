@@ -29,7 +29,7 @@ BLOCK = re.compile(
     rb"|(?P<others>(?:v[nt][ \t][^\n\\]*\n){1,1024})"
 )
 MARK = b"\xef\xbb\xbf"  # of the order of bytes
-FEW = 32  # lines that are sooner read one by one
+FEW = 32  # fewer lines are read faster one by one
 TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
 
 

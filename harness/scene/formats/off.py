@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from harness.errors import InputError
-from harness.scene.formats.text import LARGEST, as_text, floats, gathered, lines, rows, shown, uncommented, whole
+from harness.scene.formats.text import LARGEST, as_text, floats, gathered, rows, shown, uncommented, whole
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, beyond
 
 # How such a file begins.
@@ -59,7 +59,7 @@ class _Reader:
             )
         self._elements("vertex", vertices, self._vertex_block, self._vertex)
         self._elements("face", faces, self._face_block, self._face)
-        more = sum(bool(line.strip()) for _, line in lines(self._text[self._place :]))
+        more = sum(bool(uncommented(line).strip()) for line in self._text[self._place :].splitlines())
         return PolygonMesh(
             np.frombuffer(self._coordinates, np.float64).reshape(-1, 3),
             np.frombuffer(self._corners, np.int64),

@@ -137,8 +137,9 @@ class Rows(ABC):
                 length = self.length(place, count)
                 place += first
             if wanted is not None:
-                wanted[0].append(place)
-                wanted[1].append(length)
+                starts, lengths = wanted
+                starts.append(place)
+                lengths.append(length)
             place += length * width
         if place > self._size:
             raise IndexError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,12 +45,6 @@ def as_text(content: bytes) -> bytes:
     if b"\r" in content:
         content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return content
-
-
-def lines(text: bytes) -> Iterator[tuple[int, bytes]]:
-    """The lines of a text, counted from 1, each without what follows `#`."""
-    for number, line in enumerate(io.BytesIO(text), 1):
-        yield number, uncommented(line)
 
 
 def uncommented(line: bytes) -> bytes:
