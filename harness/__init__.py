@@ -1,6 +1,6 @@
 """A laboratory for collision detection: which pipeline, for my scene, at the accuracy I need?
 
-The functions here are what the commands stand on; importing this module imports nothing heavy.
+The commands call these functions too; importing this module imports nothing heavy.
 """
 
 from __future__ import annotations

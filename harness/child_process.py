@@ -31,7 +31,7 @@ from harness.python_child import start_module
 _LENGTH = struct.Struct("!Q")
 _CHUNK = 2**20
 MOST_BYTES = 2**31
-"""Of what a child sends and this process has not taken; no message is longer."""
+"""B that may wait in a socket for this process to take them; no message is longer."""
 
 LONGEST_WAIT = 1e6
 """s that the system can be asked to wait at once; whoever waits longer asks again."""
@@ -88,11 +88,11 @@ class Channel:
 
     Parameters
     ----------
-    end : the child's end of the socket, or its descriptor
+    connection : the child's socket, or its descriptor
     """
 
-    def __init__(self, end: socket.socket | int) -> None:
-        self._socket = socket.socket(fileno=end) if isinstance(end, int) else end
+    def __init__(self, connection: socket.socket | int) -> None:
+        self._socket = socket.socket(fileno=connection) if isinstance(connection, int) else connection
 
     def send(self, content: bytes) -> None:
         """Send a message."""
@@ -113,13 +113,13 @@ class Channel:
         return bytes(content)
 
 
-def _send(end: socket.socket, content: bytes) -> None:
+def _send(connection: socket.socket, content: bytes) -> None:
     head = _LENGTH.pack(len(content))
     if len(content) > _CHUNK:  # a large one is not copied
-        end.sendall(head)
-        end.sendall(content)
+        connection.sendall(head)
+        connection.sendall(content)
     else:  # the other side wakes up once
-        end.sendall(head + content)
+        connection.sendall(head + content)
 
 
 class Child:
@@ -128,9 +128,9 @@ class Child:
     Made by `fork` or `spawn`.
     """
 
-    def __init__(self, pid: int, end: socket.socket) -> None:
+    def __init__(self, pid: int, connection: socket.socket) -> None:
         self.pid = pid
-        self._socket, self._received = end, bytearray()
+        self._socket, self._received = connection, bytearray()
         self._descriptor = os.pidfd_open(pid)  # becomes readable when the process ends
         self._program: subprocess.Popen[bytes] | None = None
         self._ending: Ending | None = None
@@ -186,7 +186,7 @@ class Child:
 
     @property
     def unread(self) -> bool:
-        """Whether something has come that is no whole message."""
+        """Whether a part of a message has come, and not all of it."""
         return bool(self._received)
 
     def send(self, content: bytes) -> None:
@@ -320,7 +320,7 @@ def end(child: int) -> Ending:
     return ending
 
 
-def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, output: int | None) -> NoReturn:
+def _run(main: Callable[[Channel], None], connection: socket.socket, parent: int, output: int | None) -> NoReturn:
     """What a forked child does; it never returns, whatever happens."""
     code = 1
     try:
@@ -332,7 +332,7 @@ def _run(main: Callable[[Channel], None], end: socket.socket, parent: int, outpu
             os.fdopen(stream, "w", 1, encoding="utf-8", errors="backslashreplace", closefd=False) for stream in (1, 2)
         )
         if os.getppid() == parent:  # else it has ended already
-            main(Channel(end))
+            main(Channel(connection))
         code = 0
     except BaseException:
         traceback.print_exc()

@@ -34,14 +34,14 @@ def _on_processors(process: int) -> float:
 
 def kill_descendants(process: int) -> None:
     """Kill all that a process has started: again and again, since what is not dead yet may start more."""
-    calm = 0
+    rounds = 0  # one after another in which nothing was left to kill
     with suppress(psutil.NoSuchProcess):
-        while calm < 2:  # a list that is read while a process ends may lack another
+        while rounds < 2:  # a list that is read while a process ends may lack another
             if sum(_killed(started) for started in descendants(process)):
-                calm = 0
+                rounds = 0
                 time.sleep(0.001)
             else:
-                calm += 1
+                rounds += 1
 
 
 def descendants(process: int) -> list[psutil.Process]:

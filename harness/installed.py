@@ -36,9 +36,9 @@ def _version_on(path: tuple[str, ...], package: str) -> str | None:
 
 @lru_cache(maxsize=8)
 def importable(path: tuple[str, ...]) -> str:
-    """A hash of what the folders of a `sys.path` hold that can be imported, or says what is installed with its version.
+    """A hash of the names of all modules and installed versions that the folders of a `sys.path` hold.
 
-    They are looked at once a process.
+    The folders are looked at once a process.
     """
     names = "\n\n".join("\n".join(_in_folder(folder)) for folder in path)
     return hashlib.sha256(names.encode("utf-8", "surrogateescape")).hexdigest()

@@ -33,21 +33,21 @@ def folder(kind: str) -> Path | None:
 
 def kept(kind: str, name: str) -> bytes | None:
     """What a file holds; None if it is not kept."""
-    home = folder(kind)
-    if home is not None:
+    place_of_kind = folder(kind)
+    if place_of_kind is not None:
         with suppress(OSError):
-            content = (home / name).read_bytes()
-            os.utime(home / name)
+            content = (place_of_kind / name).read_bytes()
+            os.utime(place_of_kind / name)
             return content
     return None
 
 
 def keep(kind: str, name: str, content: bytes) -> None:
-    """Keep a file, where there is a home for it and room."""
-    home = folder(kind)
-    if home is not None:
+    """Keep a file, where there is a folder for it and room."""
+    place_of_kind = folder(kind)
+    if place_of_kind is not None:
         with suppress(OSError):  # no room, or larger than a run may write
-            _keep(home / name, content)
+            _keep(place_of_kind / name, content)
 
 
 def kept_arrays(kind: str, name: str) -> dict[str, NDArray[Any]] | None:

@@ -35,14 +35,14 @@ def isolate(output: int | None = None) -> None:
     os.close(nowhere)
 
 
-def limit(*, memory: int | None = None, output: int | None = None, processor: float | None = None) -> None:
-    """Limit what this process may take from now on; a limit that it had already is not raised. No core is written.
+def limit(*, memory: int | None = None, output: int | None = None, cpu: float | None = None) -> None:
+    """Limit what this process may take from now on; a limit that it had already is not raised. No core dump is written.
 
     Parameters
     ----------
     memory : B of address space, beyond what it has
     output : B of any file that it writes; what goes beyond is an error of the writer
-    processor : s of CPU time, beyond what it has used; can be set again
+    cpu : s of CPU time, beyond what it has used; can be set again
     """
     _lower(resource.RLIMIT_CORE, 0)
     if output is not None:
@@ -50,9 +50,9 @@ def limit(*, memory: int | None = None, output: int | None = None, processor: fl
         _lower(resource.RLIMIT_FSIZE, output)
     if memory is not None:
         _lower(resource.RLIMIT_AS, _address_space() + memory)
-    if processor is not None:
+    if cpu is not None:
         used = resource.getrusage(resource.RUSAGE_SELF)
-        _lower(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + processor), for_good=False)
+        _lower(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + cpu), for_good=False)
 
 
 def limit_memory_of_plugin() -> None:

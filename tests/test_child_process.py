@@ -195,7 +195,7 @@ def beyond_memory(channel):
 
 def beyond_processor_time(channel):
     for _ in range(2):  # it can be set again
-        limit(processor=0.0)
+        limit(cpu=0.0)
     while True:
         pass
 

@@ -23,9 +23,9 @@ _SPHERES_MARGIN = -1e-12
 class Coal:
     """Hulls and spheres go through the tree at once; meshes where the tree sees their bounding spheres touch.
 
-    Whether pairs touch it is asked without contacts (which are on unless one says so): the same answers in .75 to .97
-    of the time, measured in interleaved calls. Which pairs are near it is asked by the security margin, for which the
-    boxes in the tree are grown, so that spheres and hulls take one call; their gaps are those of its contacts. Gaps of
+    Whether pairs touch is asked without contacts, which coal works out by default: the same answers in .75 to .97 of
+    the time, measured in interleaved calls. Which pairs are near is asked by its security margin, for which the boxes
+    in the tree are grown, so that spheres and hulls take one call; their gaps are those of its contacts. Gaps of
     meshes are those of `coal.distance`, pair by pair, at three times the cost of the margin alone.
 
     Attributes

@@ -12,7 +12,7 @@ import numpy as np
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import UNITS, FclObjects
 from harness.backends.fcl_tree import FclTree
-from harness.backends.poses import Motion, impact_times, near_pairs, near_radii, require_finite
+from harness.backends.poses import UniformMotion, impact_times, near_pairs, near_radii, require_finite
 from harness.backends.protocol import ImpactTimes, NearPairs
 from harness.scene.scene import Scene
 from harness.vocabulary import Query, Shape
@@ -84,7 +84,7 @@ class Fcl:
     ) -> ImpactTimes:
         """Late or early, and of meshes often wrong: what was measured stands at `FclPairGaps.impacts`."""
         require_finite(positions, quaternions, velocities, spins)
-        motion = Motion(positions, quaternions, velocities, spins, duration)
+        motion = UniformMotion(positions, quaternions, velocities, spins, duration)
         pairs = self._close_pairs(motion.middle(), motion.swept_radii(self._scene.enclosing_radii))
         self._tests += len(pairs)
         return impact_times(self._single.impacts(pairs, motion), duration)

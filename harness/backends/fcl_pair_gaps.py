@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends.fcl_objects import FclObjects
-from harness.backends.poses import Motion
+from harness.backends.poses import UniformMotion
 from harness.backends.rotations import rotations
 from harness.scene.scene import Scene
 
@@ -65,7 +65,7 @@ class FclPairGaps:
             points[k] = result.nearest_points
         return gaps * self._bodies.unit, points * self._bodies.unit
 
-    def impacts(self, pairs: Pairs, motion: Motion) -> list[tuple[int, int, float]]:
+    def impacts(self, pairs: Pairs, motion: UniformMotion) -> list[tuple[int, int, float]]:
         """Which of some pairs begin to touch, and when, s after the start of a frame.
 
         What is asked is what finds most, measured on some 60 hits a shape (pumpkins, frames of .1 s, spins near 5
@@ -77,22 +77,22 @@ class FclPairGaps:
         solvers find nothing, or fewer. Cubes that fly straight at each other's middle are missed in either motion.
         """
         times = motion.steps(self._largest_turn)
-        open_ = self._apart_at_start(pairs, motion)
+        apart = self._apart_at_start(pairs, motion)
         found = []
         for start, end in pairwise(times.tolist()):
             at_end = self._end_transforms(motion, end)
             self._bodies.place(*motion.at(start))
-            hits = {pair: self._fraction(*pair, at_end) for pair in open_}
+            hits = {pair: self._fraction(*pair, at_end) for pair in apart}
             found += [(*pair, start + (end - start) * hit) for pair, hit in hits.items() if hit is not None]
-            open_ = [pair for pair, hit in hits.items() if hit is None]
+            apart = [pair for pair, hit in hits.items() if hit is None]
         return found
 
-    def _apart_at_start(self, pairs: Pairs, motion: Motion) -> list[tuple[int, int]]:
+    def _apart_at_start(self, pairs: Pairs, motion: UniformMotion) -> list[tuple[int, int]]:
         self._bodies.place(motion.positions, motion.quaternions)
         objects, result = self._bodies.objects, fcl.CollisionResult()
         return [(i, j) for i, j in pairs.tolist() if not fcl.collide(objects[i], objects[j], self._touch, result)]
 
-    def _end_transforms(self, motion: Motion, time: float) -> list[fcl.Transform]:
+    def _end_transforms(self, motion: UniformMotion, time: float) -> list[fcl.Transform]:
         positions, quaternions = motion.at(time)
         places, turns = positions / self._bodies.unit, rotations(quaternions).as_matrix()
         return [fcl.Transform(turn, place) for turn, place in zip(turns, places, strict=True)]

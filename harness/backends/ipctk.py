@@ -9,7 +9,7 @@ import numpy as np
 
 from harness.arrays import Floats, Pairs
 from harness.backends.close_spheres import close_pairs
-from harness.backends.poses import Motion, impact_times, near_radii, require_finite
+from harness.backends.poses import UniformMotion, impact_times, near_radii, require_finite
 from harness.backends.protocol import ImpactTimes
 from harness.backends.rotations import rotations
 from harness.narrowphase.units import UNITS, unit_of
@@ -70,18 +70,18 @@ class Ipctk:
     ) -> ImpactTimes:
         """Late by what straight vertices leave of their arcs, at most 2.5e-5 of a size; else early, by 1e-6."""
         require_finite(positions, quaternions, velocities, spins)
-        motion = Motion(positions, quaternions, velocities, spins, duration)
+        motion = UniformMotion(positions, quaternions, velocities, spins, duration)
         close = close_pairs(motion.middle(), motion.swept_radii(self._radii))
         at_start = self._placed(positions, quaternions, np.unique(close))
-        open_ = [(i, j) for i, j in close.tolist() if not self._intersect(i, j, at_start)]
+        apart = [(i, j) for i, j in close.tolist() if not self._intersect(i, j, at_start)]
         found = []
         for start, end in pairwise(motion.steps(_LARGEST_TURN).tolist()):
-            at_end = self._placed(*motion.at(end), np.unique(open_).astype(np.int64))
-            steps = [self._free_step(i, j, at_start, at_end) for i, j in open_]
+            at_end = self._placed(*motion.at(end), np.unique(apart).astype(np.int64))
+            steps = [self._free_step(i, j, at_start, at_end) for i, j in apart]
             found += [
-                (*pair, start + step * (end - start)) for pair, step in zip(open_, steps, strict=True) if step < 1.0
+                (*pair, start + step * (end - start)) for pair, step in zip(apart, steps, strict=True) if step < 1.0
             ]
-            open_ = [pair for pair, step in zip(open_, steps, strict=True) if step >= 1.0]
+            apart = [pair for pair, step in zip(apart, steps, strict=True) if step >= 1.0]
             at_start = at_end
         return impact_times(found, duration)
 

@@ -14,7 +14,7 @@ from harness.backends.protocol import ImpactTimes, NearPairs
 SLACK = 1e-9
 
 
-class Motion(NamedTuple):
+class UniformMotion(NamedTuple):
     """How bodies move through a frame: at constant velocity and constant spin.
 
     Attributes

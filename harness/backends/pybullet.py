@@ -24,6 +24,8 @@ from harness.vocabulary import Query, Shape
 MARGIN = 0.001
 # Of the filter that every moving body has from the start.
 _GROUP, _MASK = 1, -1
+# Places in a contact point as Bullet returns it; the normal points to the first body.
+_BODY_A, _BODY_B, _POINT_A, _POINT_B, _NORMAL, _DISTANCE = 1, 2, 5, 6, 7, 8
 
 
 class PyBullet:
@@ -87,7 +89,9 @@ class PyBullet:
         self._latest = pybullet.getContactPoints(physicsClientId=client)
         numbers, inflation = self._numbers, self._inflation
         touching = {
-            (numbers[contact[1]], numbers[contact[2]]) for contact in self._latest if contact[8] + inflation <= 0.0
+            (numbers[contact[_BODY_A]], numbers[contact[_BODY_B]])
+            for contact in self._latest
+            if contact[_DISTANCE] + inflation <= 0.0
         }
         ordered = sorted((i, j) if i < j else (j, i) for i, j in touching)
         return np.array(ordered, np.int64).reshape(-1, 2)
@@ -102,11 +106,11 @@ class PyBullet:
         for k, (i, j) in enumerate(pairs.tolist()):
             found = pybullet.getClosestPoints(bodies[i], bodies[j], reach, physicsClientId=self._client)
             if found:
-                nearest = min(found, key=lambda point: point[8])
-                gaps[k] = nearest[8] + inflation
-                # from the inflated surfaces back to those within, along the normal, which points to the first body
-                shift = np.multiply(nearest[7], 0.5 * inflation)
-                points[k] = nearest[5] + shift, nearest[6] - shift
+                nearest = min(found, key=lambda point: point[_DISTANCE])
+                gaps[k] = nearest[_DISTANCE] + inflation
+                # from the inflated surfaces back to those within, along the normal
+                shift = np.multiply(nearest[_NORMAL], 0.5 * inflation)
+                points[k] = nearest[_POINT_A] + shift, nearest[_POINT_B] - shift
         return near_pairs(pairs, gaps * self._unit, points * self._unit, within)
 
     def _place(self, positions: Floats, quaternions: Floats) -> None:
@@ -139,9 +143,10 @@ class PyBullet:
         """
         renewed: set[int] = set()
         for contact in self._latest:
-            if contact[1] not in renewed and contact[2] not in renewed:
-                pybullet.setCollisionFilterGroupMask(contact[1], -1, _GROUP, _MASK, physicsClientId=self._client)
-                renewed.add(contact[1])
+            body = contact[_BODY_A]
+            if body not in renewed and contact[_BODY_B] not in renewed:
+                pybullet.setCollisionFilterGroupMask(body, -1, _GROUP, _MASK, physicsClientId=self._client)
+                renewed.add(body)
 
     def _read_back(self, body: int) -> Hull:
         _, vertices = pybullet.getMeshData(body, -1, physicsClientId=self._client)

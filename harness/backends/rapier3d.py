@@ -6,7 +6,7 @@ import numpy as np
 import rapier3d
 
 from harness.arrays import Floats, Pairs
-from harness.backends.poses import Motion, impact_times, near_pairs, require_finite
+from harness.backends.poses import UniformMotion, impact_times, near_pairs, require_finite
 from harness.backends.protocol import ImpactTimes, NearPairs
 from harness.backends.rapier_casts import Casts, ShapeData
 from harness.backends.rotations import rotations
@@ -23,12 +23,12 @@ _SLACK = 1e-5
 class Rapier3d:
     """One step of the collision pipeline, without dynamics, answers for all pairs behind a tree of its own.
 
-    Whether pairs touch it is asked with sensors, of which the pipeline works out no more than that; it finds the same
-    pairs as by their contacts. It has no question for distances of shapes, but contacts up to a prediction distance:
-    their gaps are off by 1e-7 of a size in the median and by 9e-4 at most, of 85 pairs of hulls of 280 vertices. Of
-    meshes a contact has every pair of triangles within the distance, which takes some 20 times as long for cubes as to
-    see whether they touch, and more than 90 s for 40 meshes of 1753 faces: no gaps of meshes are asked for.
-    When pairs meet, `Casts` tells.
+    Whether pairs touch is asked of sensors, of which the pipeline works out no more than that; it finds the same pairs
+    as by contacts. It has no query for distances of shapes, but contacts up to a prediction distance: their gaps are
+    off by 1e-7 of a size in the median and by 9e-4 at most, of 85 pairs of hulls of 280 vertices. Of meshes a contact
+    has every pair of triangles within the distance, which takes some 20 times as long for cubes as to see whether they
+    touch, and more than 90 s for 40 meshes of 1753 faces: no gaps of meshes are asked for.
+    `Casts` finds when pairs meet.
     """
 
     name = "rapier3d"
@@ -75,13 +75,13 @@ class Rapier3d:
         require_finite(positions, quaternions, velocities, spins)
         if self._scene.shape == "sphere":
             spins = np.zeros_like(spins)  # no part in when they meet, and then one cast does
-        motion = Motion(positions, quaternions, velocities, spins, duration)
+        motion = UniformMotion(positions, quaternions, velocities, spins, duration)
         close = self._close_pairs(motion)
         touching = {tuple(pair) for pair in self.pairs(positions, quaternions).tolist()}
         apart = np.array([pair for pair in close.tolist() if tuple(pair) not in touching], np.int64).reshape(-1, 2)
         return impact_times(self._casts.impacts(apart, motion), duration)
 
-    def _close_pairs(self, motion: Motion) -> Pairs:
+    def _close_pairs(self, motion: UniformMotion) -> Pairs:
         """Pairs whose bounding spheres touch on their way, by the pipeline's tree; made anew when the radii change."""
         radii = motion.swept_radii(self._scene.enclosing_radii) * (1.0 + _SLACK) / self._unit
         if not np.array_equal(radii, self._radii):

@@ -17,7 +17,7 @@ import numpy as np
 import rapier3d
 
 from harness.arrays import Pairs
-from harness.backends.poses import Motion
+from harness.backends.poses import UniformMotion
 from harness.backends.rotations import rotations_at
 from harness.child_process import Channel, Child
 from harness.cpu_time import charge
@@ -54,7 +54,7 @@ class Casts:
     def __del__(self) -> None:
         self._end()
 
-    def impacts(self, pairs: Pairs, motion: Motion) -> list[tuple[int, int, float]]:
+    def impacts(self, pairs: Pairs, motion: UniformMotion) -> list[tuple[int, int, float]]:
         """Which pairs begin to touch, and when, s; one that gives no answer is none."""
         if len(pairs) == 0:
             return []
@@ -133,7 +133,7 @@ class Question(NamedTuple):
     parts: list[Part]
 
 
-def _questions(pairs: Pairs, motion: Motion, solids: list[Solid], unit: float) -> list[Question]:
+def _questions(pairs: Pairs, motion: UniformMotion, solids: list[Solid], unit: float) -> list[Question]:
     """One a pair; the body that spins less is the one at rest."""
     spins = np.linalg.norm(motion.spins, axis=1)
     slower_first = spins[pairs[:, 0]] <= spins[pairs[:, 1]]

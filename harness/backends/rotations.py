@@ -9,7 +9,7 @@ from __future__ import annotations
 from scipy.spatial.transform import Rotation
 
 from harness.arrays import Floats, Ints
-from harness.backends.poses import Motion
+from harness.backends.poses import UniformMotion
 
 
 def rotations(quaternions: Floats) -> Rotation:
@@ -17,6 +17,6 @@ def rotations(quaternions: Floats) -> Rotation:
     return Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
 
 
-def rotations_at(motion: Motion, bodies: Ints, times: Floats) -> Rotation:
+def rotations_at(motion: UniformMotion, bodies: Ints, times: Floats) -> Rotation:
     """Of bodies (k,), each at a time (k,) s after the start."""
     return Rotation.from_rotvec(motion.spins[bodies] * times[:, None]) * rotations(motion.quaternions[bodies])

@@ -88,7 +88,7 @@ def approximation(name: str, shape: Shape) -> str | None:
     ------
     BackendError
     """
-    if _process_may_be_lost:
+    if _plugins_asked_here:
         return approximations(registry.create(name)).get(shape)
     said = statement(name, NEEDED)
     if said.missing is not None:
@@ -97,12 +97,12 @@ def approximation(name: str, shape: Shape) -> str | None:
 
 
 def ask_plugins_here() -> None:
-    """Ask plugins in this process from now on: it was started to be lost if need be."""
-    global _process_may_be_lost
-    _process_may_be_lost = True
+    """Ask plugins in this process from now on, which may end by what they do and costs one run only."""
+    global _plugins_asked_here
+    _plugins_asked_here = True
 
 
-_process_may_be_lost = False
+_plugins_asked_here = False
 
 
 @lru_cache(maxsize=32)

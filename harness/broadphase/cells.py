@@ -88,7 +88,7 @@ def part_of(level: Level, part: int, parts: int) -> tuple[int, int]:
 def pairs_within(level: Level, first: int, last: int, cells: Cells, keys: Keys, close: int, tests: int) -> Found:
     """Each body with those after it in its own cell, and with the later half of the neighbouring cells.
 
-    The first bodies of all runs are compared before any pair is noted, as whether one is near cannot be foreseen, and a
+    The first bodies of all runs are compared before any pair is written: whether one is near cannot be foreseen, and a
     branch for each run would be mispredicted. Cells are unsigned as indices, or numba would ask of each whether it
     counts from the end, which takes a quarter of the time.
 

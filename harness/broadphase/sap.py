@@ -5,9 +5,9 @@ lower ends along one axis, and each is compared with those after it, up to the f
 So every pair that overlaps along this axis is met exactly once, whatever the sizes: how far a body looks depends on its
 own size alone, and a few large bodies among many small ones need no list of their own.
 
-The order is kept from frame to frame and mended by insertion sort, as few bodies change places in a frame (Baraff,
+The order is kept from frame to frame and restored by insertion sort, as few bodies change places in a frame (Baraff,
 "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992). I-COLLIDE (Cohen, Lin, Manocha and Ponamgi, 1995) keeps a
-list for each axis and notes every change of places. Here one axis is swept, the one with the fewest overlaps, and the
+list for each axis and records every change of places. Here one axis is swept, the one with the fewest overlaps, and the
 pairs met are compared along the other two, so that no pair has to be remembered.
 
 The work does not grow linearly, as a grid's does: of n bodies spread evenly through a cube, each overlaps about n^(2/3)
@@ -125,11 +125,11 @@ class SweepAndPrune:
             overlaps = [count_overlaps(positions, self.radii, axis) for axis in range(3)]
             self._axis = int(np.argmin(overlaps))
             self._most_tests = 2 * overlaps[self._axis] + len(self.radii)
-        if not mend_order(positions, self.radii, self._axis, self._order, self._lows):
+        if not insertion_sort(positions, self.radii, self._axis, self._order, self._lows):
             self.full_sorts += 1
             lows, _ = ends(positions, self.radii, self._axis)
             self._order[:] = np.argsort(lows)
-            mend_order(positions, self.radii, self._axis, self._order, self._lows)
+            insertion_sort(positions, self.radii, self._axis, self._order, self._lows)
 
 
 def count_overlaps(positions: Floats, radii: Floats, axis: int) -> int:
@@ -162,7 +162,7 @@ def upper_end(x: float, radius: float) -> float:
 
 
 @kernel
-def mend_order(positions: Floats, radii: Floats, axis: int, order: Order, lows: Floats) -> bool:
+def insertion_sort(positions: Floats, radii: Floats, axis: int, order: Order, lows: Floats) -> bool:
     """Insertion sort by lower ends, from the order of the last frame.
 
     Parameters

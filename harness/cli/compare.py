@@ -306,7 +306,7 @@ def _print(found: Comparison) -> None:
             f"({one.false_hits} of {one.reported}), {one.missed_share:.3g} of the touching pairs are missed "
             f"({one.misses} of {one.touching})"
         )
-    for flight in found.flights:
+    for flight in found.free_runs:
         parted = "never" if flight.diverged is None else f"at {flight.diverged:.6g} s"
         rates = "; ".join(
             f"{one.backend} {one.pair_hits_per_second:.4g} pair hits a second, energy {one.energy_change:+.2g}"

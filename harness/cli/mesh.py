@@ -91,9 +91,9 @@ def _format_line(name: str) -> str:
 
 
 def _make(arguments: argparse.Namespace) -> None:
-    from harness.scene.solids import make_solid
+    from harness.scene.made_meshes import make
 
-    vertices, faces = make_solid(arguments.solid, arguments.faces)
+    vertices, faces = make(arguments.solid, arguments.faces)
     name = arguments.solid if arguments.faces is None else f"{arguments.solid}-{len(faces)}"
     _write(arguments.out or Path("meshes") / f"{name}.ply", vertices, faces, arguments.force)
 

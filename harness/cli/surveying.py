@@ -18,7 +18,7 @@ from harness.backends.registry import packages
 from harness.backends.statement import missing
 from harness.cli.crosscheck import Meshes
 from harness.compare.atlas import JUDGE, Atlas, Cell, Survey, survey
-from harness.compare.budget import Budget, LeftOut, told_once
+from harness.compare.budget import Budget, LeftOut, in_sentences
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.gap_atlas import SURVEYS
 from harness.compare.outcome import Comparison
@@ -160,7 +160,7 @@ def surveyed(
         cases=[row.case for row in rows],
         failures=atlas.failures,
         unsupported=atlas.unsupported,
-        left_out=told_once(left),
+        left_out=in_sentences(left),
     )
     scripts = {
         place: text
@@ -189,12 +189,12 @@ def _part(
     count: int,
     names: Sequence[str],
     budget: Budget,
-    made: type[Survey],
+    asks: type[Survey],
     recorded: Scene | None,
     file_of: Mapping[str, str],
 ) -> _Part:
     before = len(budget.left)
-    atlas = survey(shape, mesh, (family,), count, names, budget, made=made, recorded=recorded)
+    atlas = survey(shape, mesh, (family,), count, names, budget, asks=asks, recorded=recorded)
     cases = list(atlas.cases.values())
     with budget.paused():
         rows = reduced(Comparison(cases=cases), file_of, len(cases))

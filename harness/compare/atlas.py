@@ -141,7 +141,7 @@ def survey(
     *,
     progress: Callable[[str], None] = lambda line: None,
     timeout: float = ANSWER_SECONDS,
-    made: type[Survey] | None = None,
+    asks: type[Survey] | None = None,
     recorded: Scene | None = None,
 ) -> Atlas:
     """Ask engines about every pose of some families, and judge every answer.
@@ -155,19 +155,19 @@ def survey(
     budget : ends it early, and keeps what was left out
     progress : told what is being done
     timeout : s for an answer
-    made : what is asked; whether they touch, if nothing is said
+    asks : what asks the engines; whether they touch, if nothing is said
     recorded : whose poses the family "resting" is of
     """
-    atlas, made = Atlas(), made or Survey
+    atlas, asks = Atlas(), asks or Survey
     with budget.paused():
         for name in names:
             preload(name)
             if name == OWN:
                 compile_own_gaps(shape)
             else:
-                make_ready(MethodName.read(name, shape, made.query))
+                make_ready(MethodName.read(name, shape, asks.query))
     for family in families:
-        what = f"{made.query}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
+        what = f"{asks.query}, {shape}{f' of {mesh.name}' if mesh is not None and shape != 'sphere' else ''}"
         if budget.spent:
             budget.leave_out(what, family, f"not asked, {budget.why}")
             continue
@@ -176,7 +176,7 @@ def survey(
             sets = resting_poses(recorded, count)
         else:
             sets = family_poses(family, shape, (mesh,) if mesh else (), count)
-        asked, given = made(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
+        asked, given = asks(atlas, family, shape, mesh, names, budget, timeout).ask(sets)
         if asked < given:
             budget.leave_out(what, family, f"{given - asked} of {given} poses not asked, {budget.why}")
     return atlas
@@ -210,7 +210,7 @@ class Survey:
     def ask(self, pose_sets: Iterable[PoseSet]) -> tuple[int, int]:
         """Every engine about every pose, until the time is spent; how many poses that was, and how many there are.
 
-        Poses between those that a budget of one in several asks about count as asked.
+        Poses between every n-th that the budget asks about count as asked.
         """
         given = through = 0
         for pose_set in pose_sets:

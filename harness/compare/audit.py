@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from harness.compare.gap_audit import GapAudit, differing_gap
 from harness.compare.impact_audit import ImpactAudit, differing_time
@@ -11,7 +11,7 @@ from harness.compare.isolated import Facts
 from harness.compare.outcome import Comparison
 from harness.compare.pair_audit import PairAudit, differing_verdict
 from harness.compare.poses import Pose
-from harness.compare.query_answers import Told
+from harness.compare.query_answers import PairAnswers
 from harness.compare.question import Question
 from harness.compare.tally import NamePair
 from harness.compare.truths import Pair, Truths
@@ -29,7 +29,7 @@ class Audit(Protocol):
 
     found: Comparison
 
-    def add(self, truths: Truths, query_index: int, answers: tuple[Told, Told]) -> None:
+    def add(self, truths: Truths, query_index: int, answers: tuple[PairAnswers, PairAnswers]) -> None:
         """Count the answers of both at a pose, or in a frame.
 
         Parameters
@@ -48,15 +48,22 @@ class _MakesAudit(Protocol):
 
 class _FindsDifference(Protocol):
     def __call__(
-        self, question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told
+        self, question: Question, facts: Facts, scene: Scene, pose: Pose, answer: PairAnswers, other: PairAnswers
     ) -> Pair | None: ...
 
 
-_AUDITS: Mapping[Query, tuple[_MakesAudit, _FindsDifference]] = {
-    "collision": (PairAudit, differing_verdict),
-    "tolerance": (GapAudit, differing_gap),
-    "distance": (GapAudit, differing_gap),
-    "impact": (ImpactAudit, differing_time),
+class _OfQuery(NamedTuple):
+    """What audits the answers to a query, and what finds the first pair of which two answers differ."""
+
+    audit: _MakesAudit
+    difference: _FindsDifference
+
+
+_AUDITS: Mapping[Query, _OfQuery] = {
+    "collision": _OfQuery(PairAudit, differing_verdict),
+    "tolerance": _OfQuery(GapAudit, differing_gap),
+    "distance": _OfQuery(GapAudit, differing_gap),
+    "impact": _OfQuery(ImpactAudit, differing_time),
 }
 
 
@@ -71,9 +78,11 @@ def audit_of(names: NamePair, scene: Scene, facts: tuple[Facts, Facts], question
     question : what both are asked
     flown : whether the bodies fly; else they are put where verdicts are hard
     """
-    return _AUDITS[question.query][0](names, scene, facts, question, flown=flown)
+    return _AUDITS[question.query].audit(names, scene, facts, question, flown=flown)
 
 
-def changed_pair(question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told) -> Pair | None:
+def changed_pair(
+    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: PairAnswers, other: PairAnswers
+) -> Pair | None:
     """The first pair of which a method tells another thing than before, by more than the tolerance that it declares."""
-    return None if answer == other else _AUDITS[question.query][1](question, facts, scene, pose, answer, other)
+    return None if answer == other else _AUDITS[question.query].difference(question, facts, scene, pose, answer, other)

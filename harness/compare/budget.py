@@ -1,4 +1,4 @@
-"""How much a comparison may ask: so many seconds, and every so many poses."""
+"""How much a comparison may ask: so many seconds, and every n-th pose."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class LeftOut(NamedTuple):
     how: str = ""
 
 
-def told_once(left: Iterable[LeftOut]) -> list[str]:
+def in_sentences(left: Iterable[LeftOut]) -> list[str]:
     """A sentence for each thing that was left out, with all that has it in common.
 
-    >>> told_once([LeftOut("2 bodies", f"sizes 1 to {n} m", "not asked") for n in (10, 50)] * 2)
+    >>> in_sentences([LeftOut("2 bodies", f"sizes 1 to {n} m", "not asked") for n in (10, 50)] * 2)
     ['2 bodies, sizes 1 to 10 m; sizes 1 to 50 m: not asked']
     """
     whiches: dict[tuple[str, str], dict[str, None]] = {}
@@ -61,7 +61,7 @@ class Budget:
     @property
     def left_out(self) -> list[str]:
         """What was left out, in sentences, each thing once."""
-        return told_once(self.left)
+        return in_sentences(self.left)
 
     def leave_out(self, what: str, which: str = "", how: str = "") -> None:
         """Keep what is left out; see `LeftOut`."""

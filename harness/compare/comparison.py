@@ -12,7 +12,7 @@ from harness.compare.group import Group, load
 from harness.compare.isolated import ANSWER_SECONDS, preload
 from harness.compare.outcome import LOADING, POINTS, Case, Comparison, Failure
 from harness.compare.poses import Pose, PoseSet
-from harness.compare.query_answers import Told, make_ready
+from harness.compare.query_answers import PairAnswers, make_ready
 from harness.compare.question import COLLISION, Question
 from harness.compare.steadiness import unsteady
 from harness.compare.tally import NamePair, Tally
@@ -183,7 +183,7 @@ class _Questions:
         }
         # in their order, those that some pair needs
         self.names = [name for name in group.asked if any(name in pair for pair in group.pairs)]
-        self._answers: dict[str, dict[int, Told]] = {name: {} for name in self.names}
+        self._answers: dict[str, dict[int, PairAnswers]] = {name: {} for name in self.names}
         self._failures: dict[str, list[Failure]] = {name: [] for name in self.names}
         self._exhausted: dict[str, str] = {}
 
@@ -210,7 +210,7 @@ class _Questions:
         for name in self.names:
             if not any(name in pair for pair in pairs):
                 continue
-            answer = self._group.asked[name].told(pose)
+            answer = self._group.asked[name].answers_at(pose)
             if isinstance(answer, str):
                 self._failures[name].append(Failure(self._pair_of(name), name, pose.name, place + 1, answer))
                 if sum(one.kind != POINTS for one in self._failures[name]) >= MOST_FAILURES:
@@ -264,7 +264,7 @@ class _Questions:
 
 
 def _what(pose_set: PoseSet) -> str:
-    """Of a line about these poses, what is asked there; nothing where it is whether bodies touch."""
+    """What is asked at these poses, as a line begins; of collision the query is left out."""
     question, scene = pose_set.question, pose_set.scene
     asked = "" if question.query == "collision" else f"{question.text}, "
     return f"{asked}{len(scene.bodies)} bodies, shape {scene.shape}"

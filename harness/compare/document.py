@@ -93,7 +93,7 @@ def document(found: Comparison, rows: list[Reduced], files: dict[int, str]) -> d
         "checked": [_counts(checked) for checked in found.checked],
         "approximations": [_approximation(one) for one in found.approximations],
         "gaps": [_gaps(histogram) for histogram in found.gaps],
-        "flights": [asdict(flight) for flight in found.flights],
+        "flights": [asdict(flight) for flight in found.free_runs],
         "unsupported": found.unsupported,
         "left_out": found.left_out,
     }

@@ -129,7 +129,7 @@ class _EventAudit:
         )
 
     def _band(self, pair: Pair, pose: Pose, time: float) -> float:
-        """m"""
+        """m, by which a contact may be off: the tolerance, and the rounding of places."""
         bodies, chosen = self._scene.bodies, list(pair)
         moved = float(np.abs(bodies.velocities[chosen]).max()) * time
         return self._tolerance * float(bodies.sizes[chosen].mean()) + _ROUNDING * (

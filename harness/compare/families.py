@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from harness.arrays import Floats
-from harness.compare.near import touching_spheres
+from harness.backends.close_spheres import close_pairs
 from harness.compare.placing import (
     FEATURES,
     at_contact,
@@ -62,7 +62,7 @@ def resting_poses(scene: Scene, count: int) -> Iterator[PoseSet]:
     near = [
         (frame, i, j)
         for frame, places in enumerate(recorded.positions)
-        for i, j in without(touching_spheres(places, scene.bodies.radii), scene.ignored).tolist()
+        for i, j in without(close_pairs(places, scene.bodies.radii), scene.ignored).tolist()
     ]
     chosen = near if len(near) <= count else [near[place * len(near) // count] for place in range(count)]
     alike: dict[tuple[float, ...], list[tuple[int, int, int]]] = {}

@@ -52,7 +52,7 @@ def run_both(
             return Comparison(failures=[Failure(names, name, pose, method.frame, str(error))])
         assert run.trace is not None, "it was asked for"
         traces.append(run.trace)
-    return Comparison(flights=[compare_runs(names, scene, response, (traces[0], traces[1]))])
+    return Comparison(free_runs=[compare_runs(names, scene, response, (traces[0], traces[1]))])
 
 
 def digest_when_asked(scene: Scene, name: str, law: MotionLaw, budget: Budget) -> float | None:

@@ -14,7 +14,7 @@ from harness.compare.isolated import Facts
 from harness.compare.outcome import Case
 from harness.compare.pair_audit import Kind, band, band_of
 from harness.compare.poses import Pose
-from harness.compare.query_answers import Told
+from harness.compare.query_answers import PairAnswers
 from harness.compare.query_audit import Finding, QueryAudit, both
 from harness.compare.question import Question
 from harness.compare.truths import Pair, Truths
@@ -74,7 +74,9 @@ class GapAudit(QueryAudit):
         )
 
 
-def differing_gap(question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told) -> Pair | None:
+def differing_gap(
+    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: PairAnswers, other: PairAnswers
+) -> Pair | None:
     """The first pair whose gap is told another, or that only one answer has, by more than the tolerance."""
     truths = Truths(scene, pose)
     for pair in sorted(set(answer) | set(other)):

@@ -14,7 +14,7 @@ from itertools import combinations
 from harness.compare.isolated import LARGEST_TOLERANCE, BrokenError, Facts, HangingError, Isolated, UnusableError
 from harness.compare.question import COLLISION, Question
 from harness.compare.tally import NamePair
-from harness.scene.hull import Hull, hull_of, is_convex, outside
+from harness.scene.hull import Hull, hull_of, is_closed_and_convex, outside
 from harness.scene.scene import Scene
 
 
@@ -109,7 +109,7 @@ def unacceptable(facts: Facts, scene: Scene) -> str | None:
     for (mesh, size), hull in facts.hulls.items():
         if (mesh, size) not in held:
             return f"it declares a hull of its own for {size} m of mesh {mesh}, which no body of the scene has"
-        if not is_convex(hull, _ROUNDED * size):
+        if not is_closed_and_convex(hull, _ROUNDED * size):
             return f"its hull of a body of {size:g} m is no closed convex surface with these vertices"
         solid = scene.solid_of(size, mesh)
         off = _apart(hull, hull_of(solid.vertices, solid.faces)) / size

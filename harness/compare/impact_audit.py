@@ -17,7 +17,7 @@ from harness.compare.isolated import Facts
 from harness.compare.outcome import Case
 from harness.compare.pair_audit import Kind, band, band_of
 from harness.compare.poses import Frame, Pose
-from harness.compare.query_answers import Told
+from harness.compare.query_answers import PairAnswers
 from harness.compare.query_audit import RIGHT, Finding, QueryAudit, both
 from harness.compare.question import Question
 from harness.compare.truths import Pair, Truths
@@ -92,7 +92,7 @@ class ImpactAudit(QueryAudit):
 
 
 def differing_time(
-    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told
+    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: PairAnswers, other: PairAnswers
 ) -> Pair | None:
     """The first pair whose time is told another, and once beyond the tolerance, or that only one answer has.
 

@@ -28,7 +28,7 @@ from harness.backends.protocol import (
 from harness.child_process import Channel, Child, guarded
 from harness.compare.own_gaps import OWN, OwnGaps
 from harness.compare.poses import Frame, Pose
-from harness.compare.query_answers import QueryAnswers, Told
+from harness.compare.query_answers import PairAnswers, QueryAnswers
 from harness.compare.question import COLLISION, Question
 from harness.errors import InputError
 from harness.methods.at_poses import AtPoses
@@ -176,7 +176,7 @@ class Isolated:
         found: Pairs | str = self._answer((pose.positions, pose.quaternions))
         return found if isinstance(found, str) else without(found, self._scene.ignored)
 
-    def told(self, pose: Pose) -> Told | str:
+    def answers_at(self, pose: Pose) -> PairAnswers | str:
         """What it tells of each pair at a pose, or in a frame, or how it failed there, as `pairs`.
 
         A frame goes on where the last one ended, if it is the next. Of collision the number is 0.
@@ -184,7 +184,7 @@ class Isolated:
         if self.question.query == "collision":
             found = self.pairs(pose)
             return found if isinstance(found, str) else dict.fromkeys(map(tuple, found.tolist()), 0.0)
-        reply: tuple[Told | str, tuple[Pair, str] | None] | str = self._answer(pose)
+        reply: tuple[PairAnswers | str, tuple[Pair, str] | None] | str = self._answer(pose)
         if isinstance(reply, str):
             return reply
         answer, self.misplaced = reply
@@ -285,7 +285,7 @@ def _serve(name: str, scene: Scene, asked: Question, channel: Channel) -> None:
         facts = _facts(made, scene)
     except Exception as error:  # a plugin may fail in any way
         broken = not isinstance(error, InputError) or isinstance(error, registry.BackendError)
-        why = str(error) if isinstance(error, InputError | ContractError) else _told(error)
+        why = str(error) if isinstance(error, InputError | ContractError) else _described(error)
         channel.send(pickle.dumps(_Refusal(why, broken)))
         return
     channel.send(pickle.dumps(facts))
@@ -319,7 +319,7 @@ def _facts(made: Backend | QueryAnswers, scene: Scene) -> Facts:
 
 def _tolerance(made: Backend | QueryAnswers, shape: Shape) -> float:
     """What it declares, if it declares the same however often it is asked."""
-    told = [float(made.tolerance(shape)) for _ in range(_TOLD)]
+    told = [float(made.tolerance(shape)) for _ in range(_TIMES_ASKED)]
     if min(told) < max(told):
         raise ContractError(
             f"it declares a tolerance of {min(told):g} one time and of {max(told):g} another, of the same shape"
@@ -328,19 +328,19 @@ def _tolerance(made: Backend | QueryAnswers, shape: Shape) -> float:
 
 
 # How often a tolerance is asked for: one that is drawn from two by lot is found out fifteen times in sixteen.
-_TOLD = 5
+_TIMES_ASKED = 5
 
 
 def _answer_queries(answers: QueryAnswers, channel: Channel) -> None:
     while (asked := channel.receive()) is not None:
         pose: Pose | Frame = pickle.loads(asked)
-        answer: Told | str
+        answer: PairAnswers | str
         try:
-            answer = answers.told(pose)
+            answer = answers.answers_at(pose)
         except ContractError as error:
             answer = str(error)
         except Exception as error:
-            answer = _told(error)
+            answer = _described(error)
         channel.send(pickle.dumps((answer, answers.misplaced)))
 
 
@@ -363,7 +363,7 @@ def _answer_all(name: str, backend: Backend, channel: Channel) -> None:
         except ContractError as error:
             answer = str(error)
         except Exception as error:
-            answer = None if isinstance(question, _Timed) else _told(error)
+            answer = None if isinstance(question, _Timed) else _described(error)
         channel.send(pickle.dumps(answer))
 
 
@@ -383,5 +383,5 @@ class _Timed:
         return (process_time() - started) / len(self.poses)
 
 
-def _told(error: Exception) -> str:
+def _described(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"

@@ -23,8 +23,8 @@ from harness.scene.scene import Scene
 
 # Steps towards the penetration depth; each that helps comes strictly nearer, most overlaps need two or three.
 _MOST_STEPS = 10
-# Unit vectors to the corners of a regular tetrahedron, whose inscribed sphere has a third of the radius; and how far of
-# a depth they are gone along.
+# Unit vectors to the corners of a regular tetrahedron, whose inscribed sphere has a third of the radius; and how
+# far the sets are moved along them, of a depth.
 _TETRAHEDRON, _TRIED = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(3.0), 0.9
 # Vertices that bound the width along a direction, and directions whose width is worked out at a time.
 _FEW, _AT_ONCE = 60, 32

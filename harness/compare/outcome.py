@@ -122,7 +122,7 @@ class Comparison:
     failures : poses at which a backend crashed, hung or raised
     unsupported : which pairs could not be compared, and why
     left_out : what was not asked, because the time for it was spent
-    flights : pairs of free runs, each by the hits of its own backend
+    free_runs : pairs of runs, each by the hits of its own backend
     """
 
     tallies: list[Tally] = field(default_factory=list)
@@ -134,7 +134,7 @@ class Comparison:
     failures: list[Failure] = field(default_factory=list)
     unsupported: list[str] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
-    flights: list[FreeRunPair] = field(default_factory=list)
+    free_runs: list[FreeRunPair] = field(default_factory=list)
 
     def add(self, other: Comparison) -> None:
         """Take in another one; verdicts of the same backends on the same shape are counted together."""
@@ -146,7 +146,7 @@ class Comparison:
         self.shared += other.shared
         # what fails to load fails so at every scene
         self.failures += [one for one in other.failures if one.pose != LOADING or one not in self.failures]
-        self.flights += other.flights
+        self.free_runs += other.free_runs
         self.left_out += [line for line in other.left_out if line not in self.left_out]
         self.unsupported += [line for line in other.unsupported if line not in self.unsupported]
 

@@ -11,12 +11,12 @@ from typing import Literal
 
 import numpy as np
 
+from harness.backends.close_spheres import close_pairs
 from harness.compare.certificate import Judgement
 from harness.compare.isolated import Facts
-from harness.compare.near import touching_spheres
 from harness.compare.outcome import Case, Comparison
 from harness.compare.poses import Pose
-from harness.compare.query_answers import Told
+from harness.compare.query_answers import PairAnswers
 from harness.compare.question import COLLISION, Question
 from harness.compare.tally import Approximation, CheckedAgreement, GapHistogram, NamePair, Tally
 from harness.compare.truths import Pair, Truths
@@ -69,7 +69,7 @@ class PairAudit:
             approximations=[self._approximation] if self._approximation else [],
         )
 
-    def add(self, truths_there: Truths, query_index: int, answers: tuple[Told, Told]) -> None:
+    def add(self, truths_there: Truths, query_index: int, answers: tuple[PairAnswers, PairAnswers]) -> None:
         """Count the verdicts of both at a pose; documented as `harness.compare.audit.Audit.add`."""
         pairs = self._scene.pair_count
         first, second = (set(answer) for answer in answers)
@@ -153,7 +153,7 @@ def checked_pair(scene: Scene, pose: Pose, query_index: int, *, flown: bool, wit
 
 
 def _near_pair(scene: Scene, pose: Pose, query_index: int, within: float) -> Pair | None:
-    near = without(touching_spheres(pose.positions, scene.bodies.radii + 0.5 * within), scene.ignored)
+    near = without(close_pairs(pose.positions, scene.bodies.radii + 0.5 * within), scene.ignored)
     if not len(near):
         return None
     i, j = near[np.random.default_rng(query_index).integers(len(near))].tolist()
@@ -161,7 +161,7 @@ def _near_pair(scene: Scene, pose: Pose, query_index: int, within: float) -> Pai
 
 
 def differing_verdict(
-    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: Told, other: Told
+    question: Question, facts: Facts, scene: Scene, pose: Pose, answer: PairAnswers, other: PairAnswers
 ) -> Pair | None:
     """The first pair that only one answer has, and that is farther from touching than the tolerance."""
     truths = Truths(scene, pose)

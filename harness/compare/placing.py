@@ -49,6 +49,7 @@ def at_contact(
 
 
 def two_bodies(shape: Shape, meshes: tuple[Mesh, ...], sizes: tuple[float, float], away: float) -> Scene:
+    """A scene of two bodies of these sizes, m, at rest, in a box that holds them so far (m) from the origin."""
     bodies = Bodies(
         positions=np.zeros((2, 3)),
         velocities=np.zeros((2, 3)),
@@ -72,6 +73,7 @@ def solid_of(scene: Scene, body: int) -> Surface | None:
 
 
 def contact_of(solid: Surface | None, size: float, feature: str, rng: np.random.Generator) -> Contact:
+    """A random point of a feature of a body, and the outward direction there; without a solid, of a sphere."""
     if solid is None:
         outward = random_direction(rng)
         return Contact(outward * (size / 2), outward)
@@ -92,17 +94,20 @@ def contact_of(solid: Surface | None, size: float, feature: str, rng: np.random.
 
 
 def face_normal(solid: Surface, face: int) -> Floats:
+    """The outward unit normal of a face, (3,)."""
     a, b, c = solid.vertices[solid.faces[face]]
     normal = _cross(b - a, c - a)
     return np.asarray(normal / np.linalg.norm(normal), np.float64)
 
 
 def random_direction(rng: np.random.Generator) -> Floats:
+    """A unit vector, (3,), uniform on the sphere."""
     vector = rng.normal(size=3)
     return np.asarray(vector / np.linalg.norm(vector), np.float64)
 
 
 def random_turn(rng: np.random.Generator) -> Floats:
+    """A unit quaternion, (4,) w x y z, uniform over all rotations."""
     quaternion = rng.normal(size=4)
     return np.asarray(quaternion / np.linalg.norm(quaternion), np.float64)
 

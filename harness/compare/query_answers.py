@@ -10,13 +10,13 @@ from harness.backends.protocol import Backend, NearPairs, approximations
 from harness.compare.poses import Frame, Pose
 from harness.compare.question import Question
 from harness.compare.witnesses import misplaced
-from harness.methods.at_poses import Queried
+from harness.methods.at_poses import QueryAtPoses
 from harness.methods.impact_times import FrameMotion
 from harness.methods.registry import method_of
 from harness.scene.scene import Scene
 from harness.vocabulary import MethodName, Shape
 
-Told: TypeAlias = dict[tuple[int, int], float]
+PairAnswers: TypeAlias = dict[tuple[int, int], float]
 """By pair i < j: the gap, m, of "distance"; s after the start of the frame, of "impact"; 0 where no number is asked."""
 
 
@@ -44,7 +44,7 @@ class QueryAnswers:
     misplaced: tuple[tuple[int, int], str] | None = None
 
     def __init__(self, name: MethodName, question: Question) -> None:
-        self._name, self._asked = name, Queried(name, question.tolerance, question.within)
+        self._name, self._asked = name, QueryAtPoses(name, question.tolerance, question.within)
         self.shapes = self._asked.shapes
         self._last = 0
 
@@ -66,7 +66,7 @@ class QueryAnswers:
         self._asked.load(scene)
         self._scene = scene
 
-    def told(self, pose: Pose) -> Told:
+    def answers_at(self, pose: Pose) -> PairAnswers:
         """What it tells of every pair that it reports."""
         if isinstance(pose, Frame):
             motion, self._last = self._motion(pose), 0

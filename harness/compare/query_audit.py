@@ -11,7 +11,7 @@ from harness.compare.isolated import Facts
 from harness.compare.outcome import Case, Comparison
 from harness.compare.pair_audit import KINDS, Kind, checked_pair
 from harness.compare.poses import Pose
-from harness.compare.query_answers import Told
+from harness.compare.query_answers import PairAnswers
 from harness.compare.question import Question
 from harness.compare.tally import CheckedAgreement, NamePair, Tally
 from harness.compare.truths import Pair, Truths
@@ -53,7 +53,7 @@ class QueryAudit(ABC):
         self._checked = CheckedAgreement(names, scene.shape, query=question.query)
         self.found = Comparison(tallies=[self._tally], checked=[self._checked])
 
-    def add(self, truths: Truths, query_index: int, answers: tuple[Told, Told]) -> None:
+    def add(self, truths: Truths, query_index: int, answers: tuple[PairAnswers, PairAnswers]) -> None:
         pairs = self._scene.pair_count
         told = {pair: both(answers, pair) for pair in sorted(set(answers[0]) | set(answers[1]))}
         differing = [pair for pair, numbers in told.items() if self._differ(truths.pose, pair, numbers)]
@@ -71,7 +71,7 @@ class QueryAudit(ABC):
         self._check_agreement(truths, query_index, answers, differing)
 
     def _check_agreement(
-        self, truths: Truths, query_index: int, answers: tuple[Told, Told], differing: list[Pair]
+        self, truths: Truths, query_index: int, answers: tuple[PairAnswers, PairAnswers], differing: list[Pair]
     ) -> None:
         """Judge one of the answers that both agree on, at every n-th query."""
         pair = checked_pair(
@@ -110,6 +110,6 @@ class QueryAudit(ABC):
         """What is proven against the answer of the method at a place in `names`, with the help of the other's."""
 
 
-def both(answers: tuple[Told, Told], pair: Pair) -> tuple[float, float]:
+def both(answers: tuple[PairAnswers, PairAnswers], pair: Pair) -> tuple[float, float]:
     """What either tells of a pair; inf where it is not reported."""
     return answers[0].get(pair, inf), answers[1].get(pair, inf)

@@ -15,7 +15,7 @@ from harness.compare.audit import changed_pair
 from harness.compare.budget import Budget
 from harness.compare.isolated import Isolated, UnusableError
 from harness.compare.poses import Pose
-from harness.compare.query_answers import Told
+from harness.compare.query_answers import PairAnswers
 from harness.scene.scene import Scene
 
 _SEED = 259
@@ -47,7 +47,7 @@ class Unsteady:
 
 
 def unsteady(
-    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Told], budget: Budget
+    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, PairAnswers], budget: Budget
 ) -> list[Unsteady]:
     """Ask every pose that was answered again. What is nearer than the method claims to know may change.
 
@@ -63,7 +63,7 @@ def unsteady(
     for place in order.tolist():
         if budget.spent or len(found) >= MOST_UNSTEADY:
             break
-        again = asked.told(poses[place])
+        again = asked.answers_at(poses[place])
         if isinstance(again, str):
             continue  # the failure itself has been told, or will be
         differing = changed_pair(asked.question, asked.facts, scene, poses[place], answers[place], again)
@@ -76,13 +76,13 @@ def unsteady(
 
 
 def _changed_afresh(
-    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, Told]
+    asked: Isolated, name: str, scene: Scene, poses: Sequence[Pose], answers: dict[int, PairAnswers]
 ) -> list[Unsteady]:
     """The pose that was asked last, with the most before it, is the first question of a new process."""
     place = max(answers)
     try:
         with Isolated(name, scene, question=asked.question) as fresh:
-            answer = fresh.told(poses[place])
+            answer = fresh.answers_at(poses[place])
     except UnusableError:
         return []
     if isinstance(answer, str):
@@ -98,19 +98,19 @@ _TRIES = 8
 
 def _is_random(asked: Isolated, name: str, scene: Scene, pose: Pose) -> bool:
     """Whether a pose that follows itself, or comes first, gets several answers."""
-    asked.told(pose)
-    in_a_row = {_key(asked.told(pose)) for _ in range(_TRIES)}
+    asked.answers_at(pose)
+    in_a_row = {_key(asked.answers_at(pose)) for _ in range(_TRIES)}
     if len(in_a_row) > 1:
         return True
     first = set()
     for _ in range(2):
         try:
             with Isolated(name, scene, question=asked.question) as fresh:
-                first.add(_key(fresh.told(pose)))
+                first.add(_key(fresh.answers_at(pose)))
         except UnusableError:
             return False
     return len(first) > 1
 
 
-def _key(answer: Told | str) -> tuple[tuple[tuple[int, int], float], ...] | str:
+def _key(answer: PairAnswers | str) -> tuple[tuple[tuple[int, int], float], ...] | str:
     return answer if isinstance(answer, str) else tuple(sorted(answer.items()))

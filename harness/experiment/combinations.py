@@ -1,8 +1,8 @@
 """Which values of leaves cannot stand together, and why. Every such rule is here, once.
 
 A rule is a function of leaf values (all leaves of the parts it looks at, defaults filled in) that returns a `Conflict`
-or None. Add a rule by writing it and naming it in one of the tuples at the end. What a backend can be asked it says
-itself: `point_rules` are told.
+or None. Add a rule by writing it and naming it in one of the tuples at the end. `point_rules` is given a
+function that tells what each backend can be asked.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ class Distribution(
             | Annotated[NativeSize, Tag(NATIVE)],
             Discriminator(
                 _kind,
-                custom_error_type="said",
+                custom_error_type="sentence",
                 custom_error_message="must be a number, {uniform: [low, high]} or {choice: [value, ...]}",
             ),
         ]

@@ -124,8 +124,10 @@ def mesh_names_in(leaf: str, value: Any) -> Iterator[tuple[tuple[str | int, ...]
 
 def unknown_key(name: str, options: Iterable[str]) -> str:
     """What to say about a key that is not one of `options`, the keys of its section."""
-    homes = {leaf.name: leaf.section for leaf in LEAVES.values()} | dict.fromkeys(MeasureSpec.model_fields, "measure")
-    hint = f"; it belongs under {homes[name]}" if name in homes else near(name, options)
+    sections = {leaf.name: leaf.section for leaf in LEAVES.values()} | dict.fromkeys(
+        MeasureSpec.model_fields, "measure"
+    )
+    hint = f"; it belongs under {sections[name]}" if name in sections else near(name, options)
     return f"unknown key {shown(name)}{hint}"
 
 

@@ -252,7 +252,7 @@ def _locate_meshes(expansion: Expansion, folder: Path, problems: FileProblems) -
             try:
                 located[reference] = locate_mesh(reference, folder)
             except NotInstalledError as error:
-                problems.add_lacking(origin, str(error))
+                problems.add_not_installed(origin, str(error))
             except InputError as error:
                 problems.add((*origin, *below) if isinstance(origin, tuple) else origin, str(error))
     return located

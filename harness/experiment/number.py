@@ -26,7 +26,7 @@ BYTES_PATTERN = r"^[0-9]+(\.[0-9]+)? *([kKmMgGtT]?[iI]?[bB])?$"
 
 def wrong(message: str) -> PydanticCustomError:
     """An error for a validator to raise, whose message is shown word for word."""
-    return PydanticCustomError("said", "{message}", {"message": message})
+    return PydanticCustomError("sentence", "{message}", {"message": message})
 
 
 def finite(value: Any) -> float:

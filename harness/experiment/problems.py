@@ -37,15 +37,15 @@ class FileProblems:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.found = list(document.problems)
-        self.lacking: list[Problem] = []
+        self.not_installed: list[Problem] = []
 
     def add(self, origin: Origin, message: str) -> None:
         """Keep a problem with the value from `origin`."""
         self.found.append(problem_at(self.document, origin, message))
 
-    def add_lacking(self, origin: Origin, message: str) -> None:
+    def add_not_installed(self, origin: Origin, message: str) -> None:
         """Keep that the value from `origin` asks for what is not installed."""
-        self.lacking.append(problem_at(self.document, origin, message))
+        self.not_installed.append(problem_at(self.document, origin, message))
 
     def add_errors(self, origin: Origin, error: ValidationError, model: Any = None) -> None:
         """Keep all that pydantic found wrong with the value from `origin`."""
@@ -64,8 +64,8 @@ class FileProblems:
 
         Where there are none, but something is not installed, that is a `NotInstalledError`.
         """
-        if self.lacking and not self.found:
-            raise NotInstalledError(self.lacking)
+        if self.not_installed and not self.found:
+            raise NotInstalledError(self.not_installed)
         if not self.found:
             return
         ordered = sorted(dict.fromkeys(self.found), key=lambda problem: (problem.line or 0, problem.column or 0))

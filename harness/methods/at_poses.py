@@ -10,7 +10,7 @@ from harness.arrays import Floats, Pairs
 from harness.backends import registry
 from harness.backends.protocol import Distances, Impacts, ImpactTimes, NearPairs, queries, set_accuracy
 from harness.errors import InputError
-from harness.methods.impact_times import FrameMotion, ImpactFinder, half_ways
+from harness.methods.impact_times import FrameMotion, ImpactFinder, half_moves
 from harness.methods.method import Method
 from harness.methods.native_queries import NativeImpacts, NativeNearPairs
 from harness.methods.near_pairs import NearFinder
@@ -57,7 +57,7 @@ class AtPoses:
         return self._detector.pairs(positions, quaternions)
 
 
-class Queried:
+class QueryAtPoses:
     """The answers of a method to a query other than collision, without its motion.
 
     Parameters
@@ -129,7 +129,7 @@ class Queried:
         duration : s, of the frame
         """
         if motion.first:
-            self._impacts.begin(half_ways(self._scene, motion.velocities, duration))
+            self._impacts.begin(half_moves(self._scene, motion.velocities, duration))
         pairs, times = self._impacts.checked(self._impacts.impacts(motion))
         order = np.lexsort((times, pairs[:, 1], pairs[:, 0]))
         _, first = np.unique(pairs[order, 0] * self._bodies + pairs[order, 1], return_index=True)

@@ -53,7 +53,7 @@ class FrameMotion(NamedTuple):
     duration: float
 
 
-def half_ways(scene: Scene, velocities: Floats, duration: float) -> Floats:
+def half_moves(scene: Scene, velocities: Floats, duration: float) -> Floats:
     """(n,) m: no body comes farther from where it is in the middle of a frame.
 
     Parameters
@@ -63,9 +63,9 @@ def half_ways(scene: Scene, velocities: Floats, duration: float) -> Floats:
     duration : s, of a frame; of no effect on recorded poses, of which the longest way of all is taken
     """
     if scene.poses is not None:
-        return 0.5 * scene.poses.longest_ways
-    ways: Floats = 0.5 * duration * np.linalg.norm(velocities, axis=1)
-    return ways
+        return 0.5 * scene.poses.farthest_moves
+    moves: Floats = 0.5 * duration * np.linalg.norm(velocities, axis=1)
+    return moves
 
 
 class ImpactFinder(Protocol):
@@ -75,7 +75,7 @@ class ImpactFinder(Protocol):
     def counters(self) -> Mapping[str, float]:
         """What was counted over all frames, if anything is."""
 
-    def begin(self, ways: Floats) -> None:
+    def begin(self, moves: Floats) -> None:
         """Begin anew, with frames in which bodies come no farther from their middle than (n,) m."""
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:
@@ -107,13 +107,13 @@ class KernelImpacts:
         tests: dict[str, float] = {"pair_tests": self._broad_phase.pair_tests, "narrow_tests": self._tests}
         return tests if self._spheres else {**tests, "unfollowed_contacts": self._given_up}
 
-    def begin(self, ways: Floats) -> None:
+    def begin(self, moves: Floats) -> None:
         self._tests = self._given_up = 0
         self._before = np.empty(0, PAIR_STATE)
         self._velocities = self._spins = np.full_like(self._scene.bodies.spins, np.nan)
         sizes = self._scene.bodies.sizes
         near = max(self._tolerance, 2.0 * LEAST_GAP) * sizes
-        self._broad_phase = self._make((self._scene.enclosing_radii + ways + near) * (1.0 + SLACK))
+        self._broad_phase = self._make((self._scene.enclosing_radii + moves + near) * (1.0 + SLACK))
         self._found = onsets_of(0, 64)
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:

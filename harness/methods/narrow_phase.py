@@ -117,7 +117,7 @@ class MeshNarrowPhase:
         self._fcl = FclPairTest(scene)
         self._places = Places(sizes)
         self._hulls = HullPairs([mesh.hull for mesh in meshes], mesh_of, margin, threads)
-        self._settle = MeshPairs(meshes, mesh_of, threads).settle if crossing else _all_open
+        self._settle = MeshPairs(meshes, mesh_of, threads).settle if crossing else _all_undecided
         # Convex bodies that overlap touch, unless one contains the other, for which it must be larger.
         self._convex = np.array([mesh.convex for mesh in meshes])[mesh_of]
         self._any_convex = bool(self._convex.any())
@@ -181,7 +181,7 @@ def hulls_of_size_1(scene: Scene) -> list[Hull]:
     return hulls
 
 
-def _all_open(pairs: Pairs, placement: Placement) -> PairVerdicts:
+def _all_undecided(pairs: Pairs, placement: Placement) -> PairVerdicts:
     return np.full(len(pairs), PairVerdict.UNDECIDED, np.int8)
 
 

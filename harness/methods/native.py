@@ -15,11 +15,11 @@ from harness.backends.all_but_ignored import AllButIgnored
 from harness.backends.protocol import Backend, Distances, Impacts, ImpactTimes, NearPairs, queries, set_accuracy
 from harness.backends.statement import approximation
 from harness.errors import InputError
-from harness.methods.asking import ImpactAsking, NearAsking
 from harness.methods.impact_times import ImpactFinder
 from harness.methods.method import WarmUp
 from harness.methods.native_queries import NativeImpacts, NativeNearPairs
 from harness.methods.near_pairs import NearFinder
+from harness.methods.query_pipelines import ImpactPipeline, NearPipeline
 from harness.methods.stages import Plan
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
@@ -57,7 +57,7 @@ class Native(SteppedMethod):
         if self.name.query == "collision":
             yield from super().warm_ups(meshes)
         else:
-            yield f"frames around {self.name.query}", partial(_ask_nobody, self.name)
+            yield f"frames around {self.name.query}", partial(_compile_around, self.name)
 
     def _loaded(self, scene: Scene) -> Backend:
         """The backend, holding the scene.
@@ -79,10 +79,10 @@ class Native(SteppedMethod):
         return backend
 
 
-class _Nobody:
+class _FindsNothing:
     """In the place of a backend for the warm-up, which compiles only what is around it: it finds nothing."""
 
-    name = "nobody"
+    name = "nothing"
 
     def distances(self, positions: Floats, quaternions: Floats, within: float) -> NearPairs:
         return NearPairs(_NO_PAIRS, np.empty(0), None)
@@ -96,13 +96,13 @@ class _Nobody:
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 
 
-def _ask_nobody(name: MethodName) -> None:
+def _compile_around(name: MethodName) -> None:
     import_module("harness.backends.rotations")  # half a second which each run would spend once it asks a library
     scene, law, method = two_bodies(name.shape), MotionLaw(0.6, 0.3, "none"), Native(name)
-    plan, nobody = method.plan(scene, law), cast(Any, _Nobody())
-    near, impacts = NativeNearPairs(nobody, scene, 1.0), NativeImpacts(nobody, scene)
-    for asking in (NearAsking(scene, plan, near, gaps=True), ImpactAsking(scene, plan, impacts)):
-        asking.fly(law, traced=True)
+    plan, stand_in = method.plan(scene, law), cast(Any, _FindsNothing())
+    near, impacts = NativeNearPairs(stand_in, scene, 1.0), NativeImpacts(stand_in, scene)
+    for pipeline in (NearPipeline(scene, plan, near, gaps=True), ImpactPipeline(scene, plan, impacts)):
+        pipeline.fly(law, traced=True)
 
 
 METHOD = Native

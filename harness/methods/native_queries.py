@@ -72,7 +72,7 @@ class NativeImpacts:
     def counters(self) -> Mapping[str, float]:
         return require_counters(self._backend.name, getattr(self._backend, "counters", {}))
 
-    def begin(self, ways: Floats) -> None:
+    def begin(self, moves: Floats) -> None:
         """A backend finds close pairs by itself."""
 
     def impacts(self, motion: FrameMotion) -> ImpactTimes:

@@ -59,10 +59,10 @@ class KernelNearPairs:
         self._broad_phase, self._within = broad_phase, within
         self._gaps = gap_search(scene)
         smallest = float(scene.bodies.sizes.min(initial=np.inf))
-        decide = Accuracy(within, within, 0.0)
-        self._accuracy = decide if query == "tolerance" else Accuracy(within, 0.0, tolerance * smallest)
+        deciding = Accuracy(within, within, 0.0)
+        self._accuracy = deciding if query == "tolerance" else Accuracy(within, 0.0, tolerance * smallest)
         # a gap whose bounds leave open whether it is too wide is searched again, until they do not
-        self._decide, self._decision = gap_search(scene), decide
+        self._deciding_gaps, self._deciding = gap_search(scene), deciding
         self._tests = 0
 
     @property
@@ -73,18 +73,18 @@ class KernelNearPairs:
         close = self._broad_phase.close_pairs(positions)
         self._tests += len(close)
         gaps, points = self._gaps(close, positions, quaternions, self._accuracy)
-        open_ = (gaps > self._within) & (gaps < np.inf)
-        if open_.any():
-            self._close(open_, close, positions, quaternions, Gaps(gaps, points))
+        undecided = (gaps > self._within) & (gaps < np.inf)
+        if undecided.any():
+            self._decide(undecided, close, positions, quaternions, Gaps(gaps, points))
         near = gaps <= self._within
         return NearPairs(close[near], gaps[near], points[near])
 
     def checked(self, found: NearPairs) -> NearPairs:
         return found
 
-    def _close(self, open_: Flags, close: Pairs, positions: Floats, quaternions: Floats, found: Gaps) -> None:
-        decided = self._decide(close[open_], positions, quaternions, self._decision)
-        found.gaps[open_], found.points[open_] = decided.gaps, decided.points
+    def _decide(self, undecided: Flags, close: Pairs, positions: Floats, quaternions: Floats, found: Gaps) -> None:
+        decided = self._deciding_gaps(close[undecided], positions, quaternions, self._deciding)
+        found.gaps[undecided], found.points[undecided] = decided.gaps, decided.points
 
 
 class GapSearch(Protocol):

@@ -128,7 +128,7 @@ class Folds:
         return new
 
 
-class Onsets:
+class OnsetFinder:
     """Finds the touching pairs that did not touch in the frame before."""
 
     def __init__(self, count: int) -> None:

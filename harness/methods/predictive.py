@@ -61,13 +61,13 @@ class Predictive(Method):
         else:
             take("orientations", False, "a sphere looks the same however it is turned")
             take("backend", False, "spheres are solved in closed form; no library is asked")
-        _pairs(scene, law, decisions)
+        _decide_pairs(scene, law, decisions)
         take("walls", True, "the next wall of each body, from its velocity")
         if solid and law.response == "none":
             take("wall_search", False, "response is none: the box folds the path of each bounding sphere exactly")
         elif solid:
             take("wall_search", True, "the support function of the hull, once a bounding sphere meets the wall")
-        _lasting_contacts(law, decisions)
+        _decide_lasting_contacts(law, decisions)
         decide_penetration(scene, decisions)
         decide_recording(recorded, decisions)
         return decisions.finish()
@@ -80,7 +80,7 @@ class Predictive(Method):
         yield f"events of {shape}s{of_meshes(meshes)}", partial(_fly_events, shape, meshes)
 
 
-def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
+def _decide_pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
     """How the next hit of a pair is found: among which neighbours, and by which searches."""
     count, solid = len(scene.bodies), scene.shape != "sphere"
     alone = f"there is no pair of bodies among {count}"
@@ -95,7 +95,7 @@ def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
 
     take("pairs", True, found)
     if not solid:
-        _neighbour_lists(scene, law, decisions)
+        _decide_neighbour_lists(scene, law, decisions)
         return
     take("hull_search", True, "hulls are advanced to their contact when their spheres meet, not before")
     if scene.shape == "hull":
@@ -106,7 +106,7 @@ def _pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
         take("mesh_search", False, "every mesh is convex, its own hull, and no body can be inside an equal one")
 
 
-def _lasting_contacts(law: MotionLaw, decisions: Decisions) -> None:
+def _decide_lasting_contacts(law: MotionLaw, decisions: Decisions) -> None:
     """Whether an inelastic collapse, infinitely many hits in a finite time, must be kept from happening."""
     loses = law.response == "elastic" and law.restitution < 1.0
     if loses:
@@ -121,7 +121,7 @@ def _lasting_contacts(law: MotionLaw, decisions: Decisions) -> None:
     decisions.take("lasting_contacts", loses, why, fixed=fixed)
 
 
-def _neighbour_lists(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
+def _decide_neighbour_lists(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
     """Whether neighbours are listed, and the lists renewed now and then, or looked for in cells at every search."""
     bodies = scene.bodies
     start = check(bodies.positions, bodies.velocities, bodies.radii, bodies.masses, scene.box.half)

@@ -15,10 +15,10 @@ from harness.arrays import Floats, Pairs
 from harness.broadphase.all_pairs import AllPairs
 from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
-from harness.methods.asking import ImpactAsking, NearAsking
 from harness.methods.impact_times import ImpactFinder, KernelImpacts
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.near_pairs import KernelNearPairs, NearFinder, near_radii
+from harness.methods.query_pipelines import ImpactPipeline, NearPipeline
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepping import Detector, Stepping
 from harness.methods.warm_up_scene import RESPONSES, TOUCHING, of_meshes, two_bodies
@@ -102,11 +102,11 @@ class SteppedMethod(Method):
 
     def plan(self, scene: Scene, law: MotionLaw, *, recorded: bool = False) -> Plan:
         decisions, flown = Decisions(self.forced), law.frames * law.dt
-        self._motion(scene, decisions)
-        _orientations(scene, decisions)
-        pairs = self._pairs(scene, flown, decisions)
-        _response(scene, law, pairs, decisions)
-        self._walls(scene, law, flown, pairs, decisions)
+        self._decide_motion(scene, decisions)
+        _decide_orientations(scene, decisions)
+        pairs = self._decide_pairs(scene, flown, decisions)
+        _decide_response(scene, law, pairs, decisions)
+        self._decide_walls(scene, law, flown, pairs, decisions)
         if self.name.query == "collision":
             decide_penetration(scene, decisions)
         else:
@@ -119,9 +119,9 @@ class SteppedMethod(Method):
         pairs = plan.keeps("pairs")
         if self.name.query in NEAR_QUERIES:
             finder = self.near_finder(scene, plan) if pairs else None
-            return NearAsking(scene, plan, finder, gaps=self.name.query == "distance")
+            return NearPipeline(scene, plan, finder, gaps=self.name.query == "distance")
         if self.name.query == "impact":
-            return ImpactAsking(scene, plan, self.impact_finder(scene, plan) if pairs else None)
+            return ImpactPipeline(scene, plan, self.impact_finder(scene, plan) if pairs else None)
         return Stepping(scene, plan, self.detector(scene, plan) if pairs else None)
 
     def warm_ups(self, meshes: int = 1) -> Iterator[WarmUp]:
@@ -132,7 +132,7 @@ class SteppedMethod(Method):
         shape: Shape = "sphere" if self.name.shape == "sphere" else "hull"
         yield f"frames of {shape}s{of_meshes(meshes)}", partial(_fly_frames, shape, meshes)
 
-    def _motion(self, scene: Scene, decisions: Decisions) -> None:
+    def _decide_motion(self, scene: Scene, decisions: Decisions) -> None:
         if scene.poses is not None:
             why = f"poses are recorded: every frame takes those of {scene.poses.name}"
             decisions.take("motion", True, why, fixed="poses are recorded")
@@ -154,7 +154,7 @@ class SteppedMethod(Method):
                 fixed="it may be asked once for all frames only where its stages are known",
             )
 
-    def _pairs(self, scene: Scene, flown: float, decisions: Decisions) -> bool:
+    def _decide_pairs(self, scene: Scene, flown: float, decisions: Decisions) -> bool:
         """Whether pairs are tested at all, and by which stages."""
         count = len(scene.bodies)
         if count < 2:
@@ -180,7 +180,7 @@ class SteppedMethod(Method):
             self.decide_cull(scene, near, decisions)
         return True
 
-    def _walls(self, scene: Scene, law: MotionLaw, flown: float, pairs: bool, decisions: Decisions) -> None:
+    def _decide_walls(self, scene: Scene, law: MotionLaw, flown: float, pairs: bool, decisions: Decisions) -> None:
         everything = self.tests_everything
         if scene.poses is not None:
             kept = decisions.take("walls", False, "poses are recorded: there are no walls", fixed="there are no walls")
@@ -227,7 +227,7 @@ def decide_recording(recorded: bool, decisions: Decisions) -> None:
         decisions.take("recording", False, "nothing asks for recorded poses", fixed="there is nothing to record for")
 
 
-def _orientations(scene: Scene, decisions: Decisions) -> None:
+def _decide_orientations(scene: Scene, decisions: Decisions) -> None:
     if scene.shape == "sphere":
         decisions.take("orientations", False, "a sphere looks the same however it is turned")
     elif scene.poses is not None:
@@ -239,7 +239,7 @@ def _orientations(scene: Scene, decisions: Decisions) -> None:
         decisions.take("orientations", True, why, fixed=why)
 
 
-def _response(scene: Scene, law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
+def _decide_response(scene: Scene, law: MotionLaw, pairs: bool, decisions: Decisions) -> None:
     if scene.poses is not None:
         decisions.take("response", False, "poses are recorded: nothing answers a hit", fixed="poses are recorded")
     elif law.response == "none":
@@ -273,9 +273,9 @@ def _fly_frames(shape: Shape, meshes: int) -> None:
         law = MotionLaw(2 * dt, dt, response)
         decisions = Decisions()
         decisions.take("motion", True, "")
-        _orientations(scene, decisions)
+        _decide_orientations(scene, decisions)
         decisions.take("pairs", True, "")
-        _response(scene, law, True, decisions)
+        _decide_response(scene, law, True, decisions)
         decisions.take("walls", response != "none", "")
         decisions.take("wall_cull", shape != "sphere", "")
         decide_penetration(scene, decisions)

@@ -16,7 +16,7 @@ from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.backends.contract import made, read_only, require_counters, require_pairs
 from harness.backends.protocol import Backend
 from harness.measure.clocks import Clock
-from harness.methods.observer import Folds, Observer, Onsets, conserved
+from harness.methods.observer import Folds, Observer, OnsetFinder, conserved
 from harness.methods.stages import Plan
 from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.course import CourseLog
@@ -239,7 +239,7 @@ def _observation(
 
     if response is not None:
         return answered if course is None else _recorded(answered, course, trajectory)
-    onsets, folds = Onsets(len(trajectory.positions)), Folds(trajectory)
+    onsets, folds = OnsetFinder(len(trajectory.positions)), Folds(trajectory)
     return passing
 
 

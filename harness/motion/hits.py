@@ -92,7 +92,7 @@ class Trace:
         keys = zip((answers.frames * self.step).tolist(), *answers.pairs.T.tolist(), strict=True)
         known = dict(zip(keys, answers.gaps.tolist(), strict=True))
         events = zip(self.times.tolist(), *self.bodies.T.tolist(), strict=True)
-        return [_told(known.get(event)) for event in events]
+        return [_gap_or_none(known.get(event)) for event in events]
 
     def to_json(self) -> dict[str, Any]:
         """The document that `harness trace --json` prints."""
@@ -134,7 +134,7 @@ class Trace:
                 "frame": frame,
                 "time": frame * self.step,
                 "bodies": pair,
-                "gap": _told(gap),
+                "gap": _gap_or_none(gap),
                 "points": answers.points[k].tolist() if there[k] else None,
             }
             for k, (frame, pair, gap) in enumerate(zip(*columns, strict=True))
@@ -164,7 +164,7 @@ class Trace:
         return text.getvalue()
 
 
-def _told(gap: float | None) -> float | None:
+def _gap_or_none(gap: float | None) -> float | None:
     return None if gap is None or isnan(gap) else gap
 
 

@@ -38,18 +38,18 @@ MOST_CREEPING = 2_000
 # Of the tolerance: the gap at which a contact ends, a little more than the one at which the next begins, and how far
 # bodies may move in a step though nothing proves that they touch.
 ENDING_GAP, RESOLUTION = 1.125, 0.125
-# How many levels above the triangles that crossed the next crossing is sought first, and for how many steps there and
-# from the roots.
+# How many levels above the triangles that crossed the next crossing is searched for first, and for how many steps there
+# and from the roots.
 LEVELS_UP = 2
 NEARBY_STEPS = 100
 STEPS = 100_000
 # Of the time for which the last crossing lasted: the next one is to last as long, if one can be found. With .5, or with
 # a search from higher up, following a contact takes longer.
 LESS = 0.3
-# Of the sum of the sizes: a way. Where no crossing lasts for longer than that takes, at first and near the end of a
-# contact, it is not worth asking how deep the bodies are in each other.
+# Of the sum of the sizes: a distance. Where no crossing lasts longer than points take to move that far, at first and
+# near the end of a contact, it is not worth asking how deep the bodies are in each other.
 SHALLOW = 5e-4
-# Of that: where the next one lasts no longer, it is sought around more triangles, for more steps; from
+# Of that: where the next one lasts no longer, it is searched for around more triangles, for more steps; from
 # the roots that takes three times as long.
 MUCH_LESS, LEVELS_WIDER, WIDER_STEPS = 1.0, 3, 300
 # Where the bodies are held by their gap alone, after how many instants the whole surfaces are searched for a crossing.

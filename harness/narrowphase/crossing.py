@@ -1,8 +1,9 @@
 """Proofs that two surfaces touch, or that they do not.
 
-That they touch is proved by an edge of one that passes through a triangle of the other. It is sought where parts of the
-surfaces are deepest in each other: most surfaces that touch are through each other somewhere, and one such place is
-enough. That they do not touch is proved when every part of one has been seen to be apart from every part of the other.
+That they touch is proved by an edge of one that passes through a triangle of the other. It is searched for where parts
+of the surfaces are deepest in each other: most surfaces that touch are through each other somewhere, and one such place
+is enough. That they do not touch is proved when every part of one has been seen to be apart from every part of the
+other.
 """
 
 from __future__ import annotations

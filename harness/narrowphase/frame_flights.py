@@ -110,5 +110,5 @@ def motion_in(flights: FrameFlights, body: int, pair: PairFlight, side: int, now
 
 @inner
 def pair_flight() -> PairFlight:
-    """Unwritten."""
+    """Uninitialised."""
     return PairFlight(np.empty((2, 3)), np.empty((2, 3)))

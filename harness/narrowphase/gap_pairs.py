@@ -93,12 +93,12 @@ class MeshGapPairs:
 
 
 def gap_memory(capacity: int) -> GapMemory:
-    """Unwritten."""
+    """Uninitialised."""
     return GapMemory(np.empty(capacity, np.int64), np.empty((capacity, 4), np.int64), np.empty((capacity, 2), np.int64))
 
 
 def gaps_of(count: int) -> Gaps:
-    """Unwritten."""
+    """Uninitialised."""
     return Gaps(np.empty(count), np.empty((count, 2, 3)))
 
 

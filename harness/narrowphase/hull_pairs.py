@@ -116,7 +116,7 @@ class HullPairs:
 
 
 def memory(capacity: int) -> Memory:
-    """Unwritten."""
+    """Uninitialised."""
     return Memory(np.empty(capacity, np.int64), np.empty((capacity, 3)), np.empty((capacity, 4), np.int64))
 
 

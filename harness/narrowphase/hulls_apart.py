@@ -10,8 +10,8 @@ from harness.narrowphase.gjk import MARGIN, WarmStart, hull_distance
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.vectors import scaled
 
-# How far ahead it is looked first: a way, of the mean size, that is doubled; and the most looks.
-FIRST_LOOK, MOST_LOOKS = 0.05, 7
+# How far points move, of the mean size, until the first time that is tried; that is doubled for each of the next tries.
+FIRST_WAY, MOST_TRIALS = 0.05, 7
 
 
 @kernel
@@ -27,8 +27,8 @@ def apart_again(
 ) -> float:
     """A time (s) in a window at which two hulls are apart again, or its end if none is found.
 
-    It is looked for ever farther on: bodies that have just parted are in each other's hollows for a moment, and a
-    search through their trees up to when their spheres part takes a fifth more steps.
+    Later and later times are tried: bodies that have just parted are in each other's hollows for a moment, and a search
+    through their trees up to when their spheres part takes a fifth more steps.
 
     Parameters
     ----------
@@ -41,8 +41,8 @@ def apart_again(
     speed, margin = fastest_passing(a, b), MARGIN * (a.size + b.size)
     if not speed > 0.0:
         return end
-    wait = FIRST_LOOK * 0.5 * (a.size + b.size) / speed
-    for _ in range(MOST_LOOKS):
+    wait = FIRST_WAY * 0.5 * (a.size + b.size) / speed
+    for _ in range(MOST_TRIALS):
         if not begin + wait < end:
             break
         pose = relative_motion(a, b, begin + wait).pose

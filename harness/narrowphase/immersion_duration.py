@@ -26,8 +26,8 @@ from harness.narrowphase.vectors import Matrix, Vector, cross, dot, minus, plus,
 OUTSIDE = 0.5 + 1e-9
 # Of the size: the clearance that rounding of positions may take away.
 ROUNDING = 1e-9
-# Looks ahead along the way of a point, at most; and of the time found so far, what a look must add for another.
-MOST_LOOKS, WORTH = 24, 0.1
+# Steps along the way of a point, at most; and of the time found so far, what a step must add for another.
+MOST_STEPS, WORTH = 24, 0.1
 # Cells from the surface, within which all nodes around a point are asked: by the nearest alone, a clearance is found
 # half a cell too short.
 NEAR_SURFACE = 3.0
@@ -48,7 +48,7 @@ class FieldPlace(NamedTuple):
     size: float
 
 
-class Traveller(NamedTuple):
+class TrackedPoint(NamedTuple):
     """A point of one body that is followed through the field of the other.
 
     Attributes
@@ -99,45 +99,45 @@ def immersion_lasts(
         for end in range(2):
             k = inmost if end == 0 else outmost
             arm = arm_of(point_of(points, k), side, pose)
-            traveller = Traveller(arm, side, reach, 0.0, 1.0 if end == 0 else -1.0)
-            time = stays(field, place.size, traveller, seen, time)
+            tracked = TrackedPoint(arm, side, reach, 0.0, 1.0 if end == 0 else -1.0)
+            time = stays(field, place.size, tracked, seen, time)
         for k in range(len(field.caps)):
             arm = arm_of((field.caps[k, 0], field.caps[k, 1], field.caps[k, 2]), 1 - side, pose)
-            traveller = Traveller(arm, 1 - side, its_reach, place.size * field.caps[k, 3], 0.0)
-            time = stays(other, pose.size_a if side == 0 else pose.size_b, traveller, seen, time)
+            tracked = TrackedPoint(arm, 1 - side, its_reach, place.size * field.caps[k, 3], 0.0)
+            time = stays(other, pose.size_a if side == 0 else pose.size_b, tracked, seen, time)
         lasts = max(lasts, time)
     return lasts
 
 
 @kernel
-def stays(field: ClearanceField, size: float, traveller: Traveller, seen: RelativeMotion, enough: float) -> float:
+def stays(field: ClearanceField, size: float, tracked: TrackedPoint, seen: RelativeMotion, enough: float) -> float:
     """For how long a point of one body certainly stays on its side of the other's surface, s, up to what is enough.
 
     Parameters
     ----------
     field, size : of the other body, whose size is in m
-    traveller : Traveller
+    tracked : TrackedPoint
     seen : RelativeMotion of the bodies
     enough : s
     """
-    spin, its_spin = (seen.spin_a, seen.spin_b) if traveller.side == 0 else (seen.spin_b, seen.spin_a)
+    spin, its_spin = (seen.spin_a, seen.spin_b) if tracked.side == 0 else (seen.spin_b, seen.spin_a)
     rate, its_rate, speed = sqrt(dot(spin, spin)), sqrt(dot(its_spin, its_spin)), sqrt(dot(seen.drift, seen.drift))
-    sign = 1.0 if traveller.side == 0 else -1.0
+    sign = 1.0 if tracked.side == 0 else -1.0
     away, drift = scaled(seen.pose.offset, -sign), scaled(seen.drift, -sign)
     r, time = seen.pose.rotation, 0.0
-    for _ in range(MOST_LOOKS):
+    for _ in range(MOST_STEPS):
         # seen from the centre of the other body, in axes that do not turn
-        arm, centre = rotated(traveller.point, spin, rate, time), plus(away, scaled(drift, time))
+        arm, centre = rotated(tracked.point, spin, rate, time), plus(away, scaled(drift, time))
         place = plus(centre, arm)
         there = rotated(place, its_spin, its_rate, -time)
-        there = scaled(turned_back(r, there) if traveller.side == 0 else there, 1.0 / size)
+        there = scaled(turned_back(r, there) if tracked.side == 0 else there, 1.0 / size)
         clear = clearance(field, there)
-        clear = size * ((abs(clear) if traveller.sign == 0.0 else traveller.sign * clear) - ROUNDING) - traveller.less
+        clear = size * ((abs(clear) if tracked.sign == 0.0 else tracked.sign * clear) - ROUNDING) - tracked.less
         if not clear > 0.0:
             break
         passing = minus(plus(drift, cross(spin, arm)), cross(its_spin, place))
         # as seen from the other body, which turns: it goes round its own centre, and Coriolis and centrifugal terms
-        apart, reach = sqrt(dot(centre, centre)), traveller.reach
+        apart, reach = sqrt(dot(centre, centre)), tracked.reach
         bend = rate**2 * reach + 2.0 * its_rate * (speed + rate * reach) + its_rate**2 * (apart + reach)
         wait = until_passed(clear, sqrt(dot(passing, passing)), bend, its_rate**2 * speed)
         time += wait

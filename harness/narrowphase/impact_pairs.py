@@ -94,7 +94,7 @@ class Count(NamedTuple):
     given_up: int
 
 
-class Place(NamedTuple):
+class NumberedPair(NamedTuple):
     """Pair k of those asked about, of bodies i and j."""
 
     k: int
@@ -159,7 +159,7 @@ def pair_onsets(
     flights: FrameFlights,
     solids: Solids,
     found: Onsets,
-    in_piece: Callable[[Solids, Place, Motion, Motion, Piece, Followed, Onsets], Followed],
+    in_piece: Callable[[Solids, NumberedPair, Motion, Motion, Piece, Followed, Onsets], Followed],
 ) -> Count:
     """The onsets of all pairs, in order, given what follows a pair of the solids through a straight piece."""
     count, given_up, place = 0, 0, 0
@@ -184,7 +184,7 @@ def pair_onsets(
             tolerance = asked.tolerance * 0.5 * (a.size + b.size)
             piece = Piece(now, wait, straight, tolerance, asked.first and now == 0.0)
             followed = again_if_unknown(
-                solids, Place(k, i, j), a, b, piece, Followed(state, count, True), found, in_piece
+                solids, NumberedPair(k, i, j), a, b, piece, Followed(state, count, True), found, in_piece
             )
             state, count = followed.state, followed.onsets
             given_up += not followed.known
@@ -200,13 +200,13 @@ def pair_onsets(
 @inner
 def again_if_unknown(
     solids: Solids,
-    place: Place,
+    place: NumberedPair,
     a: Motion,
     b: Motion,
     piece: Piece,
     before: Followed,
     found: Onsets,
-    in_piece: Callable[[Solids, Place, Motion, Motion, Piece, Followed, Onsets], Followed],
+    in_piece: Callable[[Solids, NumberedPair, Motion, Motion, Piece, Followed, Onsets], Followed],
 ) -> Followed:
     """A pair through a piece, and on from where a search is given up at a larger tolerance.
 
@@ -225,7 +225,7 @@ def again_if_unknown(
 
 @kernel
 def spheres_in_piece(
-    nothing: int, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
+    nothing: int, place: NumberedPair, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Spheres touch once in a straight piece, from a root of a quadratic to the next."""
     gap, drift = minus(b.position, a.position), minus(b.velocity, a.velocity)
@@ -233,25 +233,25 @@ def spheres_in_piece(
     if not (met.enter <= piece.length and met.leave >= 0.0):
         return Followed(NOTHING_KNOWN, before.onsets, True)
     count = before.onsets
-    # what touches at the start has been noted, unless rounding has put its beginning off until now: then it approaches
+    # what touches at the start was reported before, unless rounding has delayed its beginning: then it approaches
     begins = met.enter > 0.0 or (not piece.settled and dot(gap, drift) < 0.0)
     if begins and not before.state.touches:
-        count = noted(found, count, place.k, piece.begin + max(met.enter, 0.0))
+        count = write_onset(found, count, place.k, piece.begin + max(met.enter, 0.0))
     return Followed(PairState(met.leave >= piece.length, 0.0, False, ROOTS, 0.0, 0), count, True)
 
 
 @kernel
 def hulls_in_piece(
-    hulls: Hulls, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
+    hulls: Hulls, place: NumberedPair, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Hulls, from contact to contact."""
     solids = hull_of(hulls, place.i), hull_of(hulls, place.j)
-    return solids_in_piece(solids, place.k, a, b, piece, before, found, next_hull_contact, followed_hulls)
+    return solids_in_piece(solids, place.k, a, b, piece, before, found, next_hull_onset, followed_hulls)
 
 
 @kernel
 def surfaces_in_piece(
-    shapes: Shapes, place: Place, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
+    shapes: Shapes, place: NumberedPair, a: Motion, b: Motion, piece: Piece, before: Followed, found: Onsets
 ) -> Followed:
     """Surfaces, from contact to contact."""
     solids = shape_of(shapes, place.i), shape_of(shapes, place.j)
@@ -259,7 +259,7 @@ def surfaces_in_piece(
 
 
 @kernel
-def next_hull_contact(
+def next_hull_onset(
     hull_a: SupportMap, hull_b: SupportMap, a: Motion, b: Motion, begin: float, end: float, tolerance: float
 ) -> Onset:
     """When two hulls touch, at the beginning of a window or later."""
@@ -325,19 +325,19 @@ def solids_in_piece(
         if state.until == parted:  # what touches again at once has not been seen to part
             return Followed(PairState(True, state.until, False, ROOTS, 0.0, 0), count, False)
         if not (piece.settled and state.until == 0.0):
-            count = noted(found, count, k, piece.begin + state.until)
+            count = write_onset(found, count, k, piece.begin + state.until)
         state = PairState(True, state.until, False, state.leaves, 0.0, 0)
     return Followed(state, count, True)
 
 
 @inner
-def noted(found: Onsets, count: int, k: int, time: float) -> int:
-    """Write an onset down, if there is room; how many there are."""
+def write_onset(found: Onsets, count: int, k: int, time: float) -> int:
+    """Write an onset, if there is room; returns how many there are."""
     if count < len(found.pairs):
         found.pairs[count], found.times[count] = k, time
     return count + 1
 
 
 def onsets_of(pairs: int, capacity: int) -> Onsets:
-    """Unwritten, for so many pairs and onsets."""
+    """Uninitialised, for so many pairs and onsets."""
     return Onsets(np.empty(capacity, np.int64), np.empty(capacity), np.empty(pairs, PAIR_STATE))

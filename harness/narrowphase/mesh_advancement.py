@@ -58,9 +58,8 @@ HULL_TOLERANCE = 1e-3
 # the surfaces takes as many steps a turn, however slowly they approach.
 SLOW = 1000.0
 
-
-# Spells in which hulls overlap that are searched one by one; what comes after is searched as one.
-MOST_SPELLS = 4
+# Intervals in which hulls overlap that are searched one by one; what comes after is searched as one.
+MOST_INTERVALS = 4
 
 
 class MeshShape(NamedTuple):
@@ -191,7 +190,7 @@ def time_of_mesh_impact(
         return MeshImpact(SearchVerdict.NEVER, never, 0.0, hulls.axis, after, hulls.steps)
     trees, steps = Trees(shape_a.tree, shape_b.tree), hulls.steps
     found = FirstTouch(SearchVerdict.STALLED, hulls.time, 0.0, hulls.axis, NO_NODES, 0)
-    for spell in range(MOST_SPELLS):
+    for interval in range(MOST_INTERVALS):
         # of hulls that overlap, the way from centre to centre is as good a guess as any
         axis = hulls.axis if hulls.gap > 0.0 else unit(minus(place(a, hulls.time), place(b, hulls.time)))
         found = touch_in_slabs(shape_a.hull, shape_b.hull, trees, a, b, hulls.time, rest, tolerance, axis)
@@ -200,7 +199,7 @@ def time_of_mesh_impact(
             break
         now = found.time
         until = rest
-        if spell + 1 < MOST_SPELLS:
+        if interval + 1 < MOST_INTERVALS:
             until = apart_again(shape_a.hull, shape_b.hull, a, b, now, rest, coarse, hulls.warm_start)
         found = first_touch(trees, a, b, now, until, tolerance, start.leaves)
         steps += found.steps

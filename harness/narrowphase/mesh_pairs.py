@@ -111,7 +111,7 @@ class MeshPairs:
 
 
 def crossings(capacity: int) -> Crossings:
-    """Unwritten."""
+    """Uninitialised."""
     return Crossings(np.empty(capacity, np.int64), np.empty((capacity, 2), np.int64))
 
 

@@ -52,7 +52,7 @@ class Window(NamedTuple):
     tolerance: float
 
 
-class Onset(NamedTuple):
+class OnsetTime(NamedTuple):
     """When two hulls touch: verdict and time as of an `Impact`."""
 
     verdict: SearchVerdict
@@ -101,17 +101,17 @@ def mesh_impacts(shape_a: MeshShape, shape_b: MeshShape, a: Motions, b: Motions,
 @kernel
 def near_impact(
     hull_a: SupportMap, hull_b: SupportMap, a: Motion, b: Motion, begin: float, end: float, tolerance: float
-) -> Onset:
+) -> OnsetTime:
     """When two hulls come within a tolerance; no digit of the time is lost while the spheres around them are apart."""
     gap, velocity = minus(place(b, begin), place(a, begin)), minus(b.velocity, a.velocity)
     spheres = passage(gap, velocity, a.reach + b.reach + tolerance)
     entry = max(spheres.enter, 0.0)
     rest = min(spheres.leave, end - begin) - entry
     if not rest >= 0.0:
-        return Onset(SearchVerdict.NEVER, end)
+        return OnsetTime(SearchVerdict.NEVER, end)
     one, other = seen_at(a, b, begin + entry)
     found = time_of_impact(hull_a, hull_b, one, other, 0.0, rest, tolerance, COLD_START)
-    return Onset(found.verdict, min(end, begin + (entry + found.time)))
+    return OnsetTime(found.verdict, min(end, begin + (entry + found.time)))
 
 
 @strict_step

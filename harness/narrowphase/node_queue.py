@@ -12,7 +12,7 @@ from harness.narrowphase.tree_pairs import NodePair
 
 
 class NodeQueue(NamedTuple):
-    """Room for a heap; how many pairs are in it is counted by whoever has it.
+    """Memory of a heap; its owner counts the pairs in it.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ from harness.narrowphase.simplex import depth_of_origin
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.vectors import Vector, cross, dot, minus, scaled
 
-# Rounds of making a tetrahedron roomier.
+# Steps that replace a corner, so that the origin is deeper in the tetrahedron.
 ROUNDS = 10
 # By how much longer a time is tried than one that is proved, how often, and how often it is halved again then.
 LONGER, MOST_LONGER, HALVINGS = 8.0, 12, 3

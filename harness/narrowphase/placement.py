@@ -44,12 +44,13 @@ class Places:
 
     def __init__(self, sizes: Floats) -> None:
         unit = unit_of(sizes)
-        self._fixed = (sizes / unit, 1.0 / unit, np.empty((len(sizes), 3, 3)), np.empty(len(sizes), np.bool_))
+        self._sizes, self._scale = sizes / unit, 1.0 / unit
+        self._rotations, self._turned = np.empty((len(sizes), 3, 3)), np.empty(len(sizes), np.bool_)
 
     def at(self, positions: Floats, quaternions: Floats) -> Placement:
         """The placement at these poses: positions (n, 3) in m, quaternions (n, 4); it forgets the one before."""
-        self._fixed[3][:] = False
-        return Placement(positions, quaternions, *self._fixed)
+        self._turned[:] = False
+        return Placement(positions, quaternions, self._sizes, self._scale, self._rotations, self._turned)
 
 
 @strict_step

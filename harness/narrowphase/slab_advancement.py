@@ -89,13 +89,13 @@ class NearPairs(NamedTuple):
 
 @kernel
 def empty_pairs() -> NearPairs:
-    """Unwritten."""
+    """Uninitialised."""
     return NearPairs(np.empty((MOST_PAIRS, 2), np.int64), np.empty(MOST_PAIRS), np.empty((4, ROOM)))
 
 
 @kernel
 def empty_cap() -> Cap:
-    """Unwritten."""
+    """Uninitialised."""
     return Cap(np.empty(ROOM, np.int64), np.empty(ROOM), np.empty(DEPTH, np.int64))
 
 

@@ -59,9 +59,9 @@ def discriminant(gap: Coordinates, velocity: Coordinates, speed: float, reach: f
 
 
 @inner
-def closing(of: Products) -> bool:
+def closing(terms: Products) -> bool:
     """Whether a gap is getting smaller, beyond rounding."""
-    return (of.approach < 0.0) & (of.approach * of.approach > NOISE * (of.square * of.speed))
+    return (terms.approach < 0.0) & (terms.approach * terms.approach > NOISE * (terms.square * terms.speed))
 
 
 def time_to_touch(gap: Vector, velocity: Vector, reach: float) -> float:
@@ -73,11 +73,11 @@ def time_to_touch(gap: Vector, velocity: Vector, reach: float) -> float:
     velocity : m/s, of the other as seen from the one
     reach : m, sum of the radii
     """
-    of = products(gap, velocity)
-    distance = of.square - reach * reach
-    quarter = discriminant(gap, velocity, of.speed, reach)
-    meeting = closing(of) & ((quarter >= 0.0) | (distance <= 0.0))
-    seconds = max(distance, 0.0) / (sqrt(max(quarter, 0.0)) - of.approach)
+    terms = products(gap, velocity)
+    distance = terms.square - reach * reach
+    quarter = discriminant(gap, velocity, terms.speed, reach)
+    meeting = closing(terms) & ((quarter >= 0.0) | (distance <= 0.0))
+    seconds = max(distance, 0.0) / (sqrt(max(quarter, 0.0)) - terms.approach)
     return seconds if meeting else inf
 
 
@@ -95,16 +95,16 @@ approaches = step(approaches)
 @kernel
 def passage(gap: Coordinates, velocity: Coordinates, reach: float) -> Passage:
     """From when until when |gap + velocity t| <= reach; parameters as for `time_to_touch`."""
-    of = products(gap, velocity)
-    distance = of.square - reach * reach
-    if of.speed == 0.0:
+    terms = products(gap, velocity)
+    distance = terms.square - reach * reach
+    if terms.speed == 0.0:
         return Passage(-inf, inf) if distance <= 0.0 else Passage(inf, -inf)
-    quarter = discriminant(gap, velocity, of.speed, reach)
+    quarter = discriminant(gap, velocity, terms.speed, reach)
     if quarter < 0.0:
         return Passage(inf, -inf)
     root = sqrt(quarter)
-    if of.approach < 0.0:
-        return Passage(distance / (root - of.approach), (root - of.approach) / of.speed)
-    if root + of.approach == 0.0:
+    if terms.approach < 0.0:
+        return Passage(distance / (root - terms.approach), (root - terms.approach) / terms.speed)
+    if root + terms.approach == 0.0:
         return Passage(0.0, 0.0)
-    return Passage(-(root + of.approach) / of.speed, -distance / (root + of.approach))
+    return Passage(-(root + terms.approach) / terms.speed, -distance / (root + terms.approach))

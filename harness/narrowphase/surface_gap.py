@@ -86,7 +86,7 @@ class SurfaceGap(NamedTuple):
 
 @kernel
 def search_scratch() -> SearchScratch:
-    """Unwritten."""
+    """Uninitialised."""
     return SearchScratch(np.empty((DEPTH, 2), np.int64), np.empty(DEPTH), np.empty((4, BLOCK)))
 
 

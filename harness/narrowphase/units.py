@@ -13,7 +13,6 @@ from harness.arrays import Floats
 UNITS = "the median size is about 1, by a power of two"
 """What the backends that do so say of it."""
 
-
 SMALLEST_UNITS = "the smallest size is about 1, by a power of two"
 """What a backend says whose library errs by an absolute length, which must be little of every body."""
 

@@ -88,7 +88,7 @@ class Body:
         return f"Body({self.mesh.name if self.mesh else None}, {self.shape}, size {self.size})"
 
 
-def both(a: Body, b: Body) -> int | None:
+def pose_count(a: Body, b: Body) -> int | None:
     """How many poses two bodies have together; None if each has one that is no array.
 
     Raises

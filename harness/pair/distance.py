@@ -9,7 +9,7 @@ import numpy as np
 from harness.arrays import Flags, Floats
 from harness.narrowphase.gap import EXACT, TOUCHING, Accuracy
 from harness.narrowphase.pose_gaps import Gaps, Poses, hull_gaps, mesh_gaps, sphere_gaps
-from harness.pair.body import Body, both, rows, searchable
+from harness.pair.body import Body, pose_count, rows, searchable
 
 
 class Distance(NamedTuple):
@@ -28,20 +28,20 @@ class Distance(NamedTuple):
 
 def touching(a: Body, b: Body) -> bool | Flags:
     """Whether two bodies touch; documented as `harness.touching`."""
-    count = both(a, b)
+    count = pose_count(a, b)
     found = _gaps(a, b, Accuracy(TOUCHING * (a.size + b.size), 0.0, 0.0)).gaps == 0.0
     return bool(found[0]) if count is None else found
 
 
 def distance(a: Body, b: Body) -> Distance:
     """How far two bodies are apart; documented as `harness.distance`."""
-    count = both(a, b)
+    count = pose_count(a, b)
     found = _gaps(a, b, EXACT)
     return Distance(float(found.gaps[0]), found.points[0]) if count is None else Distance(*found)
 
 
 def _gaps(a: Body, b: Body, accuracy: Accuracy) -> Gaps:
-    count = both(a, b)
+    count = pose_count(a, b)
     one, other = (Poses(rows(body.position, count), rows(body.quaternion, count), body.size) for body in (a, b))
     found = Gaps(np.empty(len(one.positions)), np.empty((len(one.positions), 2, 3)))
     if a.shape == "sphere":

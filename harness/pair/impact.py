@@ -8,12 +8,12 @@ from harness.arrays import Floats
 from harness.errors import InputError
 from harness.narrowphase.motion_impacts import Motions, Window, hull_impacts, mesh_impacts, sphere_impacts
 from harness.narrowphase.pose_gaps import Poses
-from harness.pair.body import Body, both, rows, searchable
+from harness.pair.body import Body, pose_count, rows, searchable
 
 
 def time_of_impact(a: Body, b: Body, until: float, tolerance: float = 1e-9) -> float | Floats:
     """When two bodies touch; documented as `harness.time_of_impact`."""
-    count = both(a, b)
+    count = pose_count(a, b)
     if not until >= 0.0:
         raise InputError(f"until is {until}; it must be a time of 0 s or later")
     if not 0.0 < tolerance < 1.0:

@@ -7,6 +7,7 @@ that follows, spread over the run.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,16 @@ class NearReference:
     upper: Floats
 
 
+class _Near(NamedTuple):
+    """A pair of a frame that may be near, and the bounds on its gap, m."""
+
+    frame: int
+    i: int
+    j: int
+    lower: float
+    upper: float
+
+
 def near_reference(scene: Scene, law: MotionLaw, within: float) -> NearReference:
     """The near pairs of sampled frames.
 
@@ -55,7 +66,7 @@ def near_reference(scene: Scene, law: MotionLaw, within: float) -> NearReference
     """
     trajectory = trajectory_of(scene, folded=True, turning=True)
     frames: list[int] = []
-    rows: list[tuple[int, int, int, float, float]] = []
+    found: list[_Near] = []
     count = 0
     for frame in _spread(law.frames):
         trajectory.move_to(law.time_of(frame))
@@ -67,11 +78,15 @@ def near_reference(scene: Scene, law: MotionLaw, within: float) -> NearReference
         for i, j in close.tolist():
             bounds = pair_bounds(scene, trajectory, i, j)
             if bounds.lower <= within:
-                rows.append((frame, i, j, bounds.lower, bounds.upper))
-    rows.sort()
-    at, pairs = np.array([row[0] for row in rows], np.int64), np.array([row[1:3] for row in rows], np.int64)
-    lower, upper = np.array([row[3] for row in rows], np.float64), np.array([row[4] for row in rows], np.float64)
-    return NearReference(np.array(sorted(frames), np.int64), at, pairs.reshape(-1, 2), lower, upper)
+                found.append(_Near(frame, i, j, *bounds))
+    found.sort()
+    return NearReference(
+        frames=np.array(sorted(frames), np.int64),
+        at=np.array([near.frame for near in found], np.int64),
+        pairs=np.array([(near.i, near.j) for near in found], np.int64).reshape(-1, 2),
+        lower=np.array([near.lower for near in found], np.float64),
+        upper=np.array([near.upper for near in found], np.float64),
+    )
 
 
 def pair_bounds(scene: Scene, trajectory: Trajectory, i: int, j: int) -> GapBounds:

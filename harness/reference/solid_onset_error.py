@@ -19,7 +19,7 @@ FIRST, FACTOR = 1e-14, 4.0
 
 
 def solid_onset_error(scene: Scene, contacts: Contacts) -> float:
-    """The largest such time (s) over a sample of contacts, at most the contact's length; 0 without any contact.
+    """The largest such bound (s) over a sample of contacts, at most the contact's length; 0 without any contact.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.arrays import Flags, Floats
 
-_CORNERS = ((0, 1), (1, 2), (2, 0))
+_EDGES = ((0, 1), (1, 2), (2, 0))
 
 
 class TriangleGaps(NamedTuple):
@@ -42,8 +42,8 @@ def triangle_gaps(one: Floats, other: Floats) -> TriangleGaps:
         mine, theirs = one[:, corner], other[:, corner]
         candidates.append((mine, nearest_on_triangle(mine, other)))
         candidates.append((nearest_on_triangle(theirs, one), theirs))
-    for p, q in _CORNERS:
-        for r, s in _CORNERS:
+    for p, q in _EDGES:
+        for r, s in _EDGES:
             candidates.append(_nearest_of_segments(one[:, p], one[:, q], other[:, r], other[:, s]))
     upper, points = np.full(len(one), np.inf), np.zeros((len(one), 2, 3))
     for here, there in candidates:
@@ -52,7 +52,7 @@ def triangle_gaps(one: Floats, other: Floats) -> TriangleGaps:
         upper[nearer] = distance[nearer]
         points[nearer, 0], points[nearer, 1] = here[nearer], there[nearer]
     crossing = np.zeros(len(one), np.bool_)
-    for p, q in _CORNERS:
+    for p, q in _EDGES:
         crossing |= _pierces(one[:, p], one[:, q], other) | _pierces(other[:, p], other[:, q], one)
     upper[crossing] = 0.0
     return TriangleGaps(_apart_along(points, one, other, upper), upper, points)

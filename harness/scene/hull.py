@@ -106,7 +106,7 @@ def hull_of(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Hull:
     return Hull(vertices, faces)
 
 
-def is_convex(hull: Hull, within: float) -> bool:
+def is_closed_and_convex(hull: Hull, within: float) -> bool:
     """Whether faces close a surface of which no vertex is farther outside than a distance: a hull of these vertices.
 
     Parameters
@@ -115,7 +115,7 @@ def is_convex(hull: Hull, within: float) -> bool:
     within : in the units of the hull; what its faces and vertices may be off by rounding
 
     >>> cube = convex_hull(np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)]))
-    >>> is_convex(cube, 1e-9), is_convex(hull_of(cube.vertices, cube.faces[:, ::-1]), 1e-9)
+    >>> is_closed_and_convex(cube, 1e-9), is_closed_and_convex(hull_of(cube.vertices, cube.faces[:, ::-1]), 1e-9)
     (True, False)
     """
     vertices, faces = hull.vertices, hull.faces

@@ -1,4 +1,4 @@
-"""Regular places for equal spheres in a box, for packings that chance does not reach.
+"""Regular places for equal spheres in a box, for packings denser than random placement reaches.
 
 Three lattices of sites a distance d apart, in every orientation to the axes: simple cubic, which suits boxes a few
 spheres wide, and the face-centred cubic and hexagonal ones, which fill a large box to 74 %.
@@ -67,7 +67,7 @@ def sites(count: int, distance: float, sides: NDArray[np.float64]) -> tuple[NDAr
         spacing = max(spacings)
     lattice, axes = choices[int(np.argmax(spacings))]
     found = _stretched(lattice, sides[axes], spacing * distance)
-    # What rounding let in is not offered as room.
+    # The spacing without the allowance for rounding, so that spheres displaced within it do not overlap.
     return found[:, np.argsort(axes)], max(spacing * (1 - 2 * EXACTLY), 1.0) * distance
 
 

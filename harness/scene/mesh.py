@@ -1,4 +1,4 @@
-"""The mesh all bodies of a scene share: normalised, with its convex hull."""
+"""A mesh, normalised, with its convex hull."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Surface(NamedTuple):
 class Mesh:
     """A triangle surface whose minimal bounding sphere has its centre at the origin and diameter 1.
 
-    All arrays are C-contiguous and read-only: every body, backend and stage looks at the same ones.
+    All arrays are C-contiguous and read-only: every body, backend and stage reads the same ones.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ THIN = 2.0**-50
 """A face whose corners lie on a line up to this, of the largest coordinate, has no area: some roundings of it."""
 
 
-def has_area(vertices: NDArray[np.float64], faces: Triangles) -> NDArray[np.bool_]:
+def has_area(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> NDArray[np.bool_]:
     """Which faces have an area, (f,); `vertices` (v, 3) about the origin, in any unit.
 
     The readers of files leave the others out; a mesh made in memory may have some.

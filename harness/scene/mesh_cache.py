@@ -1,7 +1,7 @@
 """Meshes kept between commands as they were read: a child process that reads files takes a third of a second.
 
-A mesh is found by the content of its file, the reader's sources and the libraries that it stands on. What was refused
-is not kept.
+A mesh is found by the content of its file, the sources of the reader and the versions of the libraries that it calls.
+What was refused is not kept.
 """
 
 from __future__ import annotations

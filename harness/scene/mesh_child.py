@@ -163,7 +163,7 @@ def _serve(answers: Channel, folder: Path, memory: int, timeout: float, meshes: 
     limit(memory=memory)
     answers.send(b"{}")
     for place, path in enumerate(paths):
-        limit(processor=timeout)
+        limit(cpu=timeout)
         try:
             part = read_mesh(path) if place < meshes else read_poses(path)
             answer = _sent(part, folder / f"{place}.npz")

@@ -17,10 +17,10 @@ from harness.scene.bounding_sphere import bounding_sphere
 from harness.scene.formats import FORMATS
 from harness.scene.formats.contents import recognised
 from harness.scene.hull import convex_hull, flat_hull
-from harness.scene.mesh import THIN, Mesh, digest
+from harness.scene.mesh import Mesh, digest, has_area
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, of_triangles, scaled
-from harness.scene.topology import Topology, is_convex, proper, topology
-from harness.scene.triangulation import Triangles, triangulated
+from harness.scene.topology import Topology, compact, is_own_hull, proper, topology
+from harness.scene.triangulation import Triangulation, triangulated
 
 MAX_BYTES = 512 * 1024**2
 # Below this, of its largest extent, a mesh is flat; above it every computation here keeps some digits.
@@ -107,8 +107,10 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
     """The mesh of polygons, validated, cut into triangles and normalised."""
     polygons = _welded(_checked(polygons))
     cut = triangulated(polygons)
-    thin = _thin(polygons.vertices, cut.faces)
-    faces, used = _compact(cut.faces[~thin])
+    thin = ~has_area(scaled(polygons.vertices), cut.faces)
+    if thin.all():
+        raise InputError(NO_AREA)
+    faces, used = compact(cut.faces[~thin])
     vertices = polygons.vertices[used]
     vertices, middle, extent = _unit_box(vertices)
     flat = _is_flat(vertices)
@@ -120,7 +122,7 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
     closed, about = faces, topology(faces, len(vertices))
     if thin.any() and not about.watertight:
         # A face without area often stands where an edge meets two others: that is no gap, though no edge is shared.
-        with_thin, all_used = _compact(proper(cut.faces))
+        with_thin, all_used = compact(proper(cut.faces))
         whole = topology(with_thin, len(all_used))
         if whole.watertight:
             about, closed = whole, (with_thin if len(all_used) == len(used) else faces)
@@ -133,7 +135,7 @@ def _made(name: str, polygons: PolygonMesh, notes: tuple[str, ...] = ()) -> Mesh
         hull=hull,
         digest=digest(vertices, faces),
         watertight=about.watertight,
-        convex=not flat and is_convex(vertices, closed, hull),
+        convex=not flat and is_own_hull(vertices, closed, hull),
         notes=(*((FLAT_NOTE,) if flat else ()), *_notes(about, cut, int(thin.sum())), *polygons.notes, *notes),
         diameter=2 * radius * extent,
         flat=flat,
@@ -181,24 +183,6 @@ def _welded(mesh: PolygonMesh) -> PolygonMesh:
     return replace(mesh, vertices=vertices[first[order]], corners=place[same.reshape(-1)][renumbered])
 
 
-def _thin(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which faces have no area, up to the rounding of their coordinates; refused if all are such."""
-    points = scaled(vertices)
-    a, b, c = (points[faces[:, corner]] for corner in range(3))
-    twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    longest = np.linalg.norm([b - a, c - b, a - c], axis=2).max(axis=0)
-    thin = twice_area <= THIN * np.abs(points).max() * longest
-    if thin.all():
-        raise InputError(NO_AREA)
-    return np.asarray(thin)
-
-
-def _compact(faces: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """The faces with their vertices numbered anew, in the same order and without gaps, and the numbers they had."""
-    used, renumbered = np.unique(faces, return_inverse=True)
-    return renumbered.reshape(-1, 3).astype(np.int32), used
-
-
 def _unit_box(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
     """The vertices moved to the origin and scaled to a largest extent of 1; where they were, and that extent."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -216,7 +200,7 @@ def _is_flat(vertices: NDArray[np.float64]) -> bool:
     return len(vertices) < 4 or bool(np.sqrt(spread[2] / spread[0]) < FLAT * 10)
 
 
-def _notes(about: Topology, cut: Triangles, thin: int) -> tuple[str, ...]:
+def _notes(about: Topology, cut: Triangulation, thin: int) -> tuple[str, ...]:
     """What a person should know of a mesh that is allowed all the same."""
     counts = (
         (about.boundary, "open: {} boundary {}", ("edge", "edges")),

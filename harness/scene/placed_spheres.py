@@ -1,9 +1,9 @@
-"""Spheres that are placed, by cells: who is near a place, and which places are taken whoever comes.
+"""Spheres that are placed, in cells: which are near a place, and which places none of the others can take.
 
 A grid for each factor of two in size; a sphere stands in that of its own. Cells are at least the largest diameter of
 their grid, so that 27 of them hold all that can be in the way of a sphere no larger.
 
-Most places are refused: of forty one is free while a million equal spheres fill .3 of their box. So each cell has 64
+Most places are refused: one in forty is free while a million equal spheres fill .3 of their box. So each cell has 64
 voxels, a bit each, which is set once a sphere is in the way of every one that would be put anywhere into the voxel. Of
 the places that are not free such a bit refuses nine in ten.
 """

@@ -70,7 +70,7 @@ def _add_few(done: int, placed: Placed, draws: Floats) -> int:
     return done
 
 
-# Draws, the fewest and the most: of twelve one is free in a fluid of packing .3.
+# Draws, the fewest and the most: one in twelve is free in a fluid of packing .3.
 _AT_ONCE = (16, 256)
 
 

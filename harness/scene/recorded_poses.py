@@ -77,7 +77,7 @@ class RecordedPoses:
         return Bodies(self.positions[0], velocities, self.quaternions[0], spins, sizes, masses)
 
     @property
-    def longest_ways(self) -> Floats:
+    def farthest_moves(self) -> Floats:
         """(n,) m: the farthest that each body moves from one time to the next."""
         ways: Floats = np.linalg.norm(np.diff(self.positions, axis=0), axis=2).max(axis=0)
         return ways

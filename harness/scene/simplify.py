@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from harness.errors import InputError
 from harness.scene.bounding_sphere import bounding_sphere
-from harness.scene.topology import topology
+from harness.scene.topology import Topology, compact, topology
 
 # Aggressiveness, and the largest factor by which one pass lowers the number of faces. Collapses can pinch a surface,
 # so that an edge gets more than two faces; another order of collapses then does not.
@@ -45,14 +45,14 @@ def simplify(
         raise InputError(f"a mesh cannot be simplified to {count} faces; a tetrahedron has 4")
     if count > len(faces):
         raise InputError(f"a mesh of {len(faces)} faces cannot be simplified to {count}")
-    before = topology(*_compact(faces))
+    before = _topology(faces)
     pinched = None
     for aim, effort in product((count, count + 1), EFFORTS):
         if before.watertight and aim % 2:
             continue
         found, triangles = _collapsed(vertices, faces, aim, *effort)
         reached = len(triangles)
-        after = topology(*_compact(triangles))
+        after = _topology(triangles)
         if reached == count + 1:
             found, triangles = drop_face(found, triangles)
         if len(triangles) == count:
@@ -96,15 +96,14 @@ def _collapsed(
     return _without_unused(vertices, faces)
 
 
+def _topology(faces: NDArray[np.int32]) -> Topology:
+    """Counts over the edges of faces, of whose vertices some may be unused."""
+    faces, used = compact(faces)
+    return topology(faces, len(used))
+
+
 def _without_unused(
     vertices: NDArray[np.float64], faces: NDArray[np.int32]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    used = np.unique(faces)
-    compact, _ = _compact(faces)
-    return vertices[used], compact
-
-
-def _compact(faces: NDArray[np.int32]) -> tuple[NDArray[np.int32], int]:
-    """The faces with their vertices numbered anew, without gaps, and how many those are."""
-    used, renumbered = np.unique(faces, return_inverse=True)
-    return renumbered.reshape(-1, 3).astype(np.int32), len(used)
+    faces, used = compact(faces)
+    return vertices[used], faces

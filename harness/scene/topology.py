@@ -64,7 +64,7 @@ def topology(faces: NDArray[np.int32], vertices: int) -> Topology:
     )
 
 
-def is_convex(vertices: NDArray[np.float64], faces: NDArray[np.int32], hull: Hull) -> bool:
+def is_own_hull(vertices: NDArray[np.float64], faces: NDArray[np.int32], hull: Hull) -> bool:
     """Whether a surface is its own hull.
 
     It is when it is closed and in one piece without handles, bends outward at no edge, has all its vertices on the
@@ -120,6 +120,12 @@ def proper(faces: NDArray[Index]) -> NDArray[Index]:
     """The faces that have three different vertices."""
     distinct: NDArray[np.bool_] = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
     return faces[distinct]
+
+
+def compact(faces: NDArray[np.integer]) -> tuple[NDArray[np.int32], NDArray[np.integer]]:
+    """The faces with their vertices numbered anew, in the same order and without gaps, and the numbers they had."""
+    used, renumbered = np.unique(faces, return_inverse=True)
+    return renumbered.reshape(-1, 3).astype(np.int32), used
 
 
 def _edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64]]:

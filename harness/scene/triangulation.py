@@ -22,7 +22,7 @@ TURNED = 1e-9
 BLOCK = 1_000_000
 
 
-class Triangles(NamedTuple):
+class Triangulation(NamedTuple):
     """What became of polygons.
 
     Parameters
@@ -41,7 +41,7 @@ class Triangles(NamedTuple):
     crossing: int
 
 
-def triangulated(mesh: PolygonMesh) -> Triangles:
+def triangulated(mesh: PolygonMesh) -> Triangulation:
     """Cut the polygons of a mesh, whose corners must be among its vertices, into triangles.
 
     Parameters
@@ -49,7 +49,7 @@ def triangulated(mesh: PolygonMesh) -> Triangles:
     mesh : no two vertices are equal, all are finite
     """
     if (mesh.lengths == 3).all():
-        return Triangles(mesh.corners.reshape(-1, 3), 0, 0, 0.0, 0)
+        return Triangulation(mesh.corners.reshape(-1, 3), 0, 0, 0.0, 0)
     corners, lengths = _distinct(mesh.corners, mesh.lengths)
     starts = np.cumsum(lengths) - lengths
     rows = np.cumsum(np.maximum(lengths - 2, 0))  # where the triangles of the next polygon begin
@@ -72,7 +72,7 @@ def triangulated(mesh: PolygonMesh) -> Triangles:
             highest = max(highest, float(height.max()) / extent)
             crossing += int(crossed.sum())
             faces[places] = np.where(cut < 0, -1, polygons[np.arange(len(block))[:, None, None], cut])
-    return Triangles(faces[faces[:, 0] >= 0], int((lengths < 3).sum()), bent, highest, crossing)
+    return Triangulation(faces[faces[:, 0] >= 0], int((lengths < 3).sum()), bent, highest, crossing)
 
 
 def _distinct(corners: NDArray[np.int64], lengths: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

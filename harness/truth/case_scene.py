@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.backends.poses import Motion
+from harness.backends.poses import UniformMotion
 from harness.pair.body import Body
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
@@ -57,7 +57,7 @@ class CaseScenes:
         """Of both bodies of a case."""
         return self._solids[int(self._cases.first.meshes[row])].shape
 
-    def motion(self, row: int) -> Motion:
+    def motion(self, row: int) -> UniformMotion:
         """How the two bodies of a case move, in its window; with unit quaternions."""
         sides = self._cases.first, self._cases.second
         positions, quaternions, velocities, spins = (
@@ -70,7 +70,7 @@ class CaseScenes:
             )
         )
         quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
-        return Motion(positions, quaternions, velocities, spins, float(self._cases.windows[row]))
+        return UniformMotion(positions, quaternions, velocities, spins, float(self._cases.windows[row]))
 
     def bodies(self, row: int, time: float = 0.0) -> tuple[Body, Body]:
         """Both bodies of a case, as they are at a time, s."""

@@ -108,7 +108,7 @@ def load_truth(path: Path) -> TruthDeclaration:
             try:
                 meshes[reference] = locate_mesh(reference, path.parent)
             except NotInstalledError as error:
-                problems.add_lacking(("families", name, "meshes", place), str(error))
+                problems.add_not_installed(("families", name, "meshes", place), str(error))
             except InputError as error:
                 problems.add(("families", name, "meshes", place), str(error))
     problems.raise_any()

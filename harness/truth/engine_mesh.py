@@ -6,7 +6,7 @@ import numpy as np
 
 from harness.scene.hull import convex_hull
 from harness.scene.mesh import Mesh, Surface, digest
-from harness.scene.topology import is_convex, topology
+from harness.scene.topology import is_own_hull, topology
 
 
 def engine_mesh(name: str, surface: Surface) -> Mesh:
@@ -16,4 +16,4 @@ def engine_mesh(name: str, surface: Surface) -> Mesh:
     faces.setflags(write=False)
     hull = convex_hull(vertices)
     watertight = topology(faces, len(vertices)).watertight
-    return Mesh(name, vertices, faces, hull, digest(vertices, faces), watertight, is_convex(vertices, faces, hull))
+    return Mesh(name, vertices, faces, hull, digest(vertices, faces), watertight, is_own_hull(vertices, faces, hull))

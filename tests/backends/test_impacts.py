@@ -10,7 +10,7 @@ import pytest
 import harness
 from harness.backends import registry
 from harness.backends.contract import require_impacts
-from harness.backends.poses import Motion
+from harness.backends.poses import UniformMotion
 from harness.backends.protocol import queries
 from harness.cpu_time import cpu_time
 from harness.scene.box import Box
@@ -140,7 +140,7 @@ def spin_for_ever():
 def test_a_cast_that_does_not_end_costs_its_own_answer_only(casts, goes_wrong):
     asked = casts(goes_wrong)
     positions = np.array([[0.0, 0, 0], [3, 0.25, 0], [6, 0, 0]])
-    motion = Motion(positions, np.eye(4)[[0, 0, 0]], np.zeros((3, 3)), np.zeros((3, 3)), 1.0)
+    motion = UniformMotion(positions, np.eye(4)[[0, 0, 0]], np.zeros((3, 3)), np.zeros((3, 3)), 1.0)
     for again in (1, 2):
         with pytest.warns(UserWarning, match="no answer within 0.4 s on when 0 and 1 meet"):
             found = asked.impacts(np.array([[0, 1], [0, 2], [1, 2]]), motion)

@@ -220,7 +220,7 @@ QUERY_HEAD = """
 import numpy as np
 from harness.backends.fcl import Fcl
 from harness.backends.protocol import ImpactTimes, NearPairs
-from harness.methods.at_poses import Queried
+from harness.methods.at_poses import QueryAtPoses
 from harness.methods.impact_times import FrameMotion
 from harness.vocabulary import MethodName
 
@@ -229,7 +229,7 @@ class Right(Fcl):
         super().load(scene)
         self.scene = scene
     def asked(self, query, within):
-        found = Queried(MethodName("fcl", "brute-force", self.scene.shape, query), 1e-9, within)
+        found = QueryAtPoses(MethodName("fcl", "brute-force", self.scene.shape, query), 1e-9, within)
         found.load(self.scene)
         return found
     def distances(self, positions, quaternions, within):

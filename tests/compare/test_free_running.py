@@ -7,11 +7,11 @@ from tests.conftest import random_scene
 def test_flights_of_equal_backends_never_part_and_those_of_a_blind_one_do_at_its_first_miss(defective):
     scene = random_scene("sphere", 12, 4.0, seed=3)
     how = {"frames": 60, "dt": 1 / 30, "response": "elastic"}
-    (same,) = run_both(scene, ("fcl", "pybullet"), **how).flights
+    (same,) = run_both(scene, ("fcl", "pybullet"), **how).free_runs
     assert same.diverged is None
     assert same.shared_hits > 0
     assert same.afterwards[0].pair_hits_per_second == same.afterwards[1].pair_hits_per_second > 0
-    (other,) = run_both(scene, ("fcl", defective("blind")), **how).flights
+    (other,) = run_both(scene, ("fcl", defective("blind")), **how).free_runs
     assert 0 < other.diverged <= 2.0
     seeing, blind = other.afterwards
     assert seeing.pair_hits_per_second > 0 == blind.pair_hits_per_second

@@ -28,7 +28,7 @@ LONG = """
 
 
 def found(query, shape, engines, families=FAMILIES, count=4):
-    made = survey(shape, cube_mesh(), families, count, engines, Budget(), made=SURVEYS[query])
+    made = survey(shape, cube_mesh(), families, count, engines, Budget(), asks=SURVEYS[query])
     json.dumps([cell_row(cell) for cell in made.cells], allow_nan=False)  # as `--json` and the database have them
     return {(cell.engine, cell.family): (cell.verdicts, cell.beyond) for cell in made.cells}
 

@@ -49,10 +49,10 @@ def test_without_room_for_the_cells_around_the_large_ones_all_is_as_with_it(monk
     radii, half = np.r_[np.full(6, 3.0), np.full(500, 0.25)], np.full(3, 10.0)
     start = placed(radii, half, 4)
     kept = flown(*start, radii, half, "elastic")
-    monkeypatch.setattr(grids, "NOTED_PER_SPHERE", 0)
+    monkeypatch.setattr(grids, "REGISTERED_PER_SPHERE", 0)
     sought = flown(*start, radii, half, "elastic")
-    assert kept._world.cells.noted_at.size > 0
-    assert sought._world.cells.noted_at.size == 0
+    assert kept._world.cells.registered_at.size > 0
+    assert sought._world.cells.registered_at.size == 0
     same_events(kept, sought, 0.0)
 
 

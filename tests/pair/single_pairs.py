@@ -13,7 +13,7 @@ from statistics import median
 import numpy as np
 
 import harness
-from harness.backends.poses import Motion
+from harness.backends.poses import UniformMotion
 from harness.backends.rapier_casts import Casts, ShapeData
 from harness.cpu_time import cpu_time
 
@@ -42,7 +42,7 @@ def motions(count, spin):
     spins[1::2] = spin * directions()
     turned = rng.normal(size=(count, 4))
     quaternions[1::2] = turned / np.linalg.norm(turned, axis=1)[:, None]
-    return Motion(positions, quaternions, velocities, spins, DURATION)
+    return UniformMotion(positions, quaternions, velocities, spins, DURATION)
 
 
 def own(mesh, shape, motion):
@@ -97,7 +97,7 @@ def main():
             cells = ["", "", ""]
             if asked:
                 motion = motions(count, spin)
-                first = Motion(*(array[: 2 * asked] for array in motion[:4]), DURATION)
+                first = UniformMotion(*(array[: 2 * asked] for array in motion[:4]), DURATION)
                 theirs, dear, silent = rapier(mesh, shape, first)
                 late = int((theirs > times[:asked] + 1e-3).sum())
                 cells = [f"{dear * 1e6:.4g}", f"{dear / took:.3g}", f"{late} of {asked}"]

@@ -156,7 +156,7 @@ def outcome(experiment: dict[str, Any], opened: dict[Path, Mesh], servers: Serve
 
 def _plan(loaded: Any, named: dict[Path, Mesh], channel: Channel) -> None:
     """In a process of its own: `harness plan`, and how it ends."""
-    limit(memory=2**30, processor=PLAN_SECONDS)
+    limit(memory=2**30, cpu=PLAN_SECONDS)
     point = loaded.points[0]
     try:
         plan_of(point, build_scene(point, files_of(loaded, point, named), loaded.measure.memory))

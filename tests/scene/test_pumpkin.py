@@ -6,10 +6,10 @@ import trimesh
 from scipy.spatial import cKDTree
 
 from harness.errors import InputError
+from harness.scene.made_meshes import make
 from harness.scene.mesh_file import make_mesh, read_mesh
 from harness.scene.pumpkin import pumpkin
 from harness.scene.simplify import simplify
-from harness.scene.solids import make_solid
 from harness.scene.topology import area, topology, volume
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -61,7 +61,7 @@ def test_it_is_concave_with_ten_ribs_and_dimples_below_and_above():
 )
 def test_the_meshes_here_are_what_the_command_makes(name, solid, faces):
     here = read_mesh(MESHES / name)
-    made = make_mesh(name, *make_solid(solid, faces))
+    made = make_mesh(name, *make(solid, faces))
     assert len(here.faces) == len(made.faces) == (faces or 12)
     assert here.diameter == pytest.approx(1, rel=1e-14)
     # Another release of the simplifier may choose other vertices, but not another shape.

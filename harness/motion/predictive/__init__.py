@@ -1,1 +1,1 @@
-"""Predictive scheduling: exact motion of spheres from event to event."""
+"""Predictive scheduling: motion of spheres, and of shapes inside of them, from event to event."""

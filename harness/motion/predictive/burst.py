@@ -4,8 +4,8 @@ Elastic bursts are finite, however long (a light ball between a heavy one and a 
 that overlaps several others, or a ball larger than its box, can go on forever, some of them in steps of 1e-17 s. So a
 sphere whose burst has reached the limit waits for a cooldown before each further hit, and each such wait is counted.
 
-Such a motion is ill-posed, and must not cost without bound: the cooldown is twice as long after every so many waits, up
-to a sixteenth of the time in which a mean sphere flies its radius.
+Such a motion is ill-posed, and must not cost without bound: the cooldown doubles after every `WAITS` waits, up to a
+sixteenth of the time in which a mean sphere flies its radius.
 """
 
 from __future__ import annotations
@@ -66,5 +66,5 @@ def cooldown(world: World, k: int, now: float) -> float:
 
 @step
 def present_cooldown(world: World) -> float:
-    """For how long, s, a sphere whose burst has reached the limit waits after so many waits of all."""
+    """For how long, s, a sphere whose burst has reached the limit waits, given how often all have waited."""
     return float(world.rules.cooldown * (1 << min(world.totals.counts[0].stalled_events // WAITS, DOUBLINGS)))

@@ -1,4 +1,4 @@
-"""Who is around a sphere in the cells."""
+"""Candidates for the pair events of a sphere, from the cells around it."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ class Event(IntEnum):
     PAIR = 1
     WALL = 2
     CROSSING = 3  # into the next cell
-    RENEWAL = 4  # of the neighbour list, or of where it is noted in finer grids
+    RENEWAL = 4  # of the neighbour list, or of the cells of finer grids at which it is registered
     NOTHING = 5
 
 
@@ -56,8 +56,8 @@ class CellTask(IntEnum):
     """What is done at a cell that a larger sphere is near."""
 
     GATHER = 0  # list the spheres in it
-    NOTE = 1  # note the larger sphere there
-    REMOVE = 2  # and no longer
+    REGISTER = 1  # add the larger sphere to those near it
+    REMOVE = 2  # take it away from them
 
 
 class Stop(IntEnum):

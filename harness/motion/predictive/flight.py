@@ -19,12 +19,12 @@ from harness.motion.predictive.cells import AROUND, cross, insert, insert_by_pos
 from harness.motion.predictive.clock import advance, rebase, relative
 from harness.motion.predictive.codes import Event, NeighbourSearch, ResponseCode, Stop, Task
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
+from harness.motion.predictive.exit_times import time_to_leave, time_to_plane
 from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
 from harness.motion.predictive.ignored import without_ignored
-from harness.motion.predictive.larger import note_all, note_anew
+from harness.motion.predictive.larger import register_all, register_anew
 from harness.motion.predictive.lookahead import prefetch_ahead, prefetch_next
 from harness.motion.predictive.neighbours import renew
-from harness.motion.predictive.numerics import time_to_leave, time_to_plane
 from harness.motion.predictive.pair_search import first_onset, first_touch
 from harness.motion.predictive.state import NOBODY, World
 
@@ -40,7 +40,7 @@ def populate(world: World, placed: bool) -> None:
             insert(world.cells, world.spheres.schedule, k)
         else:
             insert_by_position(world.cells, world.spheres, k)
-    note_all(world, placed)
+    register_all(world, placed)
     tournament.rebuild(world.queue, world.spheres.schedule)
 
 
@@ -123,7 +123,7 @@ def process_event(world: World, k: int, now: float, several: bool) -> FollowUp:
         if not renew(world, k):
             task = Task.GIVE_UP
     elif several and own.kind == Event.RENEWAL:
-        note_anew(world, k, now)
+        register_anew(world, k, now)
     return FollowUp(task, other, layer)
 
 

@@ -21,7 +21,7 @@ CLASS_RATIO, MOST_AROUND = 3.0, 60.0
 # 1.2 times that with two, and six are no better.
 CELLS_PER_SPHERE, MIXED_CELLS_PER_SPHERE = 8, 4
 # Where there are no more of them than this for each sphere, the cells around the larger ones are kept.
-NOTED_PER_SPHERE = 16
+REGISTERED_PER_SPHERE = 16
 # Cells are wider than they must be by this fraction, so that rounding at a crossing cannot lose a neighbour.
 SLACK = 1e-6
 
@@ -60,13 +60,13 @@ def empty_grids(half_box: Floats, radii: Floats, skin: float) -> Cells:
         grids=grids,
         larger=np.zeros(int(sizes.sum()) if len(grids) > 1 else 0, dtype=LARGER),
         anchors=anchors,
-        noted_at=np.zeros(room, dtype=np.uint32),
+        registered_at=np.zeros(room, dtype=np.uint32),
         renewals=np.full(count, np.inf),
     )
 
 
 def empty_anchors(grids: Records, radii: Floats, classes: NDArray[np.int32]) -> tuple[Records, int]:
-    """Anchors of spheres that are not noted yet, and the room for the cells at which they will be."""
+    """Anchors of spheres that are not registered yet, and the room for the cells at which they will be."""
     anchors = np.zeros(len(radii) if len(grids) > 1 else 0, dtype=ANCHOR)
     cells = np.zeros(len(anchors), dtype=np.int64)
     for own in range(len(grids) - 1):
@@ -76,7 +76,7 @@ def empty_anchors(grids: Records, radii: Floats, classes: NDArray[np.int32]) -> 
             along = np.minimum(2.0 * reach[:, None] / grid["side"] + 2.0, grid["shape"])
             cells[members] += along.astype(np.int64).prod(axis=1)
     total = int(cells.sum())
-    if total > NOTED_PER_SPHERE * len(radii):
+    if total > REGISTERED_PER_SPHERE * len(radii):
         anchors["first"] = -1
         return anchors, 0
     anchors["first"] = np.cumsum(cells) - cells

@@ -1,12 +1,12 @@
 """Which larger spheres are near a cell.
 
-A sphere is noted at all the cells of finer grids whose spheres it can touch before it is its margin away from where it
-was noted, its anchor. So a small sphere finds the larger ones that it can touch at its own cell, and a large one finds
-the smaller ones in the cells where it is noted. A small sphere that comes near from outside crosses into such a cell,
-and finds it there. To be a margin away from the anchor is an event.
+A sphere is registered at all the cells of finer grids whose spheres it can touch before it is its margin away from its
+anchor, where it was registered. So a small sphere finds the larger ones that it can touch at its own cell, and a large
+one finds the smaller ones in the cells where it is registered. A small sphere that comes near from outside crosses into
+such a cell, and finds it there. To be a margin away from the anchor is an event.
 
-At a cell with more of them than it has room for, as where spheres overlap, they are sought in the cells of the coarser
-grids.
+At a cell with more of them than it has room for, as where spheres overlap, they are searched for in the cells of the
+coarser grids.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from harness.kernel import step
 from harness.motion.predictive.cells import cell_number, distance_to_cell, gather_cell, gather_following, index
 from harness.motion.predictive.codes import CellTask
-from harness.motion.predictive.numerics import time_to_leave
+from harness.motion.predictive.exit_times import time_to_leave
 from harness.motion.predictive.state import LARGER_CAPACITY, Cells, Record, World
 
 
@@ -33,41 +33,41 @@ class Ball(NamedTuple):
 
 
 @step
-def note_all(world: World, placed: bool) -> None:
-    """Note the spheres at the cells around their anchors, which are where the spheres are unless they are placed."""
+def register_all(world: World, placed: bool) -> None:
+    """Register all spheres at the cells around their anchors, which are where they are unless they are placed."""
     anchors, motions = world.cells.anchors, world.spheres.motions
     for k in range(anchors.size):
         if not placed:
             for axis in range(3):
                 anchors[k].position[axis] = motions[k].position[axis]
         anchors[k].count = 0
-        visit_around_anchor(world, k, CellTask.NOTE, 0)
+        visit_around_anchor(world, k, CellTask.REGISTER, 0)
 
 
 @step
-def note_anew(world: World, k: int, now: float) -> None:
+def register_anew(world: World, k: int, now: float) -> None:
     """Move the anchor of sphere k to where it is at the present."""
     anchor, motion = world.cells.anchors[k], world.spheres.motions[k]
     if anchor.first >= 0:
-        visit_noted(world, CellTask.REMOVE, k, 0)
+        visit_registered(world, CellTask.REMOVE, k, 0)
     else:
         visit_around_anchor(world, k, CellTask.REMOVE, 0)
     for axis in range(3):
         anchor.position[axis] = motion.position[axis] + motion.velocity[axis] * (now - motion.time)
     anchor.count = 0
-    visit_around_anchor(world, k, CellTask.NOTE, 0)
+    visit_around_anchor(world, k, CellTask.REGISTER, 0)
 
 
 @step
 def gather_smaller(world: World, k: int, n: int) -> int:
-    """Append the smaller spheres that sphere k can touch before it is noted anew, which is scheduled."""
+    """Append the smaller spheres that sphere k can touch before it is registered anew, which is scheduled."""
     cells, anchor = world.cells, world.cells.anchors[k]
     margin = cells.grids[world.spheres.schedule[k].size_class].margin
     at = anchor.position
     # A little early, so that rounding cannot make it late
     cells.renewals[k] = time_to_leave(at[0], at[1], at[2], world.spheres.motions[k], 0.998 * margin * margin)
     if anchor.first >= 0:
-        return visit_noted(world, CellTask.GATHER, k, n)
+        return visit_registered(world, CellTask.GATHER, k, n)
     return visit_around_anchor(world, k, CellTask.GATHER, n)
 
 
@@ -104,21 +104,21 @@ def visit_ball(world: World, grid: Record, ball: Ball, task: int, k: int, n: int
             for cell in range(first, last + 1):
                 if task == CellTask.GATHER:
                     n = gather_cell(cells, cell, world.scratch.found, n)
-                elif task == CellTask.NOTE:
-                    note(cells, cell, k)
+                elif task == CellTask.REGISTER:
+                    register(cells, cell, k)
                 else:
                     no_longer(cells.larger[np.uintp(cell)], k)
     return n
 
 
 @step
-def visit_noted(world: World, task: int, k: int, n: int) -> int:
+def visit_registered(world: World, task: int, k: int, n: int) -> int:
     """Do the same at the cells that are kept."""
     cells, found, empty = world.cells, world.scratch.found, world.cells.following.size - 1
     first, count = cells.anchors[k].first, cells.anchors[k].count
     begin = n
     for m in range(first, first + count):
-        cell = cells.noted_at[np.uintp(m)]
+        cell = cells.registered_at[np.uintp(m)]
         if task == CellTask.GATHER:
             p = cells.heads[np.uintp(cell)]
             found[np.uintp(n)] = p
@@ -129,15 +129,15 @@ def visit_noted(world: World, task: int, k: int, n: int) -> int:
 
 
 @step
-def note(cells: Cells, cell: int, k: int) -> None:
-    """Note sphere k among the larger ones near a cell."""
+def register(cells: Cells, cell: int, k: int) -> None:
+    """Register sphere k among the larger ones near a cell."""
     larger, anchor = cells.larger[np.uintp(cell)], cells.anchors[k]
     if larger.count < LARGER_CAPACITY:
         larger.who[larger.count] = k
-    # beyond the capacity for good: who was not noted is not known any more
+    # beyond the capacity for good: who was not registered is not known any more
     larger.count = min(larger.count + 1, LARGER_CAPACITY + 1)
     if anchor.first >= 0:
-        cells.noted_at[anchor.first + anchor.count] = cell
+        cells.registered_at[anchor.first + anchor.count] = cell
         anchor.count += 1
 
 
@@ -156,10 +156,10 @@ def no_longer(larger: Record, k: int) -> None:
 def gather_larger(world: World, k: int, cell: int, now: float, n: int) -> int:
     """Append the larger spheres that sphere k can touch while it is in its cell."""
     cells, found = world.cells, world.scratch.found
-    noted = cells.larger[cell]
-    if noted.count <= LARGER_CAPACITY:
-        for m in range(noted.count):
-            found[n] = noted.who[m]
+    registered = cells.larger[cell]
+    if registered.count <= LARGER_CAPACITY:
+        for m in range(registered.count):
+            found[n] = registered.who[m]
             n += 1
         return n
     motion, own = world.spheres.motions[k], world.spheres.schedule[k].size_class

@@ -14,7 +14,7 @@ from harness.narrowphase.mesh_advancement import MeshWarmStart, hull_tolerance, 
 from harness.narrowphase.tree_pairs import NodePair
 from harness.narrowphase.verdicts import SearchVerdict
 
-UNSEEN = 0.01
+PASSED_WHILE_WAITING = 0.01
 """Of a size: how far points may pass each other in the time that is waited where a search cannot get on."""
 
 
@@ -33,7 +33,7 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
     tolerance = 0.5 * body.tolerance * (a.size + b.size)
     left = max(window.end - now, 0.0)
     one, other, phase = shape_of(body.shapes, i), shape_of(body.shapes, j), window.phase
-    hull_seeds = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
+    hull_start = warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3]
     coarse = body.concave and phase == Phase.APART
     if phase == Phase.TOUCHING:
         if body.concave:
@@ -43,14 +43,14 @@ def search_pair(solid: SolidWorld, k: int, w: int, now: float) -> None:
         verdict, time, steps = ended.verdict, ended.time, ended.steps
     elif coarse or not body.concave:
         enough = max(tolerance, hull_tolerance(a, b)) if coarse else tolerance
-        found = time_of_impact(one.hull, other.hull, a, b, 0.0, left, enough, hull_seeds)
-        verdict, time, hull_seeds, steps = found.verdict, found.time, found.warm_start, found.steps
+        found = time_of_impact(one.hull, other.hull, a, b, 0.0, left, enough, hull_start)
+        verdict, time, hull_start, steps = found.verdict, found.time, found.warm_start, found.steps
     else:
-        start = MeshWarmStart(hull_seeds, NodePair(warm.surfaces[0], warm.surfaces[1]))
+        start = MeshWarmStart(hull_start, NodePair(warm.surfaces[0], warm.surfaces[1]))
         mesh_found = time_of_mesh_impact(one, other, a, b, 0.0, left, tolerance, start)
         verdict, time, steps = mesh_found.verdict, mesh_found.time, mesh_found.steps
-        hull_seeds, (warm.surfaces[0], warm.surfaces[1]) = mesh_found.warm_start
-    warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3] = hull_seeds
+        hull_start, (warm.surfaces[0], warm.surfaces[1]) = mesh_found.warm_start
+    warm.hulls[0], warm.hulls[1], warm.hulls[2], warm.hulls[3] = hull_start
     counts.narrow_tests += 1
     counts.advancement_steps += steps
     if verdict == SearchVerdict.NEVER:
@@ -81,7 +81,7 @@ def longest_wait(cooldown: float, speed: float, size: float) -> float:
     speed : at most that of one point against another
     size : of a body, in the same unit of length
     """
-    return min(cooldown, UNSEEN * size / speed) if speed > 0.0 else cooldown
+    return min(cooldown, PASSED_WHILE_WAITING * size / speed) if speed > 0.0 else cooldown
 
 
 @kernel

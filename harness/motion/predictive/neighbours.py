@@ -15,6 +15,8 @@ from harness.motion.predictive.ignored import without_ignored
 from harness.motion.predictive.state import CAPACITY, Lists, Record, World
 from harness.prefetch import prefetch
 
+# The column of an anchor that holds the radius.
+RADIUS = 3
 # How many candidates ahead anchors are read into the cache.
 PREFETCHED = 8
 
@@ -59,7 +61,7 @@ def near(lists: Lists, k: int, p: int, skin: float) -> bool:
     """Whether two anchors are within the radii and the skin."""
     anchors = lists.anchors
     x, y, z = anchors[p, 0] - anchors[k, 0], anchors[p, 1] - anchors[k, 1], anchors[p, 2] - anchors[k, 2]
-    reach = anchors[k, 3] + anchors[p, 3] + skin
+    reach = anchors[k, RADIUS] + anchors[p, RADIUS] + skin
     return bool(x * x + y * y + z * z < reach * reach)
 
 

@@ -133,7 +133,7 @@ class Simulation:
 
     @property
     def events(self) -> NDArray[np.void]:
-        """All recorded events not yet taken, structured: time (s), kind (0 pair, 1 wall), i, j or -1, wall or -1."""
+        """All recorded events not yet taken, structured: time (s), kind (an `Event`), i, j or -1, wall or -1."""
         self._chunks = [np.concatenate([*self._chunks, self._drain()])]
         return self._chunks[0]
 
@@ -185,7 +185,7 @@ class Simulation:
 
     @property
     def pair_impulses(self) -> float:
-        """Sum over pair hits of |impulse| times the distance of centres, kg m^2/s (its likeness for 'reflect')."""
+        """Sum over pair hits of |impulse| times the distance of centres, kg m^2/s (for 'reflect', its counterpart)."""
         return self._sum("pair_virial")
 
     @property

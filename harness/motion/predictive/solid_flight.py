@@ -16,11 +16,11 @@ from harness.motion.predictive.cells import ALL, AROUND, cross, next_face
 from harness.motion.predictive.clock import advance, relative, shift_times
 from harness.motion.predictive.codes import Event, Phase, ResponseCode, Stop, Task
 from harness.motion.predictive.events import FollowUp, begin, enqueue, reason_to_stop
+from harness.motion.predictive.exit_times import time_to_plane
 from harness.motion.predictive.hits import advance_to_plane, hit_pair, note_onset, reflect_from_wall
 from harness.motion.predictive.ignored import without_ignored
-from harness.motion.predictive.larger import note_anew
+from harness.motion.predictive.larger import register_anew
 from harness.motion.predictive.narrow_search import search_pair, search_wall
-from harness.motion.predictive.numerics import time_to_plane
 from harness.motion.predictive.solids import SolidWorld, turn_to_base
 from harness.motion.predictive.state import NOBODY
 from harness.motion.predictive.windows import close, close_all, find, next_due, open_on, shift_windows, valid
@@ -101,7 +101,7 @@ def process_event(solid: SolidWorld, k: int, now: float) -> FollowUp:
     elif own.kind == Event.UNSCHEDULED:
         task = Task.PREDICT
     else:
-        note_anew(world, k, now)
+        register_anew(world, k, now)
         task = Task.EXTEND
     return FollowUp(task, other, layer)
 

@@ -60,20 +60,20 @@ GRID = np.dtype(
         ("low", np.float64, 3),  # m, where it begins
         ("side", np.float64, 3),  # m, of a cell
         ("largest", np.float64),  # m, radius
-        ("margin", np.float64),  # m, how far a sphere flies before it is noted anew at the cells of finer grids
+        ("margin", np.float64),  # m, how far a sphere flies before it is registered anew at the cells of finer grids
     ],
     align=True,
 )
 
-# The larger spheres near a cell, of coarser grids: half a cache line. More than these are not noted but counted.
+# The larger spheres near a cell, of coarser grids: half a cache line. More than these are not registered but counted.
 LARGER_CAPACITY = 7
 LARGER = np.dtype([("count", np.uint32), ("who", np.uint32, LARGER_CAPACITY)], align=True)
 
-# Where a sphere was noted at the cells of finer grids, and those cells, if there is room for them.
+# Where a sphere was registered at the cells of finer grids, and those cells, if there is room for them.
 ANCHOR = np.dtype(
     [
         ("position", np.float64, 3),  # m
-        ("first", np.int32),  # place in `Cells.noted_at` of the first cell, -1: there is no room
+        ("first", np.int32),  # place in `Cells.registered_at` of the first cell, -1: there is no room
         ("count", np.int32),  # of cells
     ],
     align=True,
@@ -187,8 +187,8 @@ class Cells(NamedTuple):
     grids: Records  # (grids,) of GRID
     larger: Records  # (cells of all grids,) of LARGER, the spheres of coarser grids; none of a single grid
     anchors: Records  # (n,) of ANCHOR; none of a single grid
-    noted_at: Indices  # cells at which spheres are noted
-    renewals: Floats  # (n,) s, when a sphere is its margin away from its anchor and must be noted anew
+    registered_at: Indices  # cells at which spheres are registered
+    renewals: Floats  # (n,) s, when a sphere is its margin away from its anchor and must be registered anew
 
 
 class Lists(NamedTuple):

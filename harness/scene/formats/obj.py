@@ -26,7 +26,7 @@ BLOCK = re.compile(
     rb"|(?P<faces>(?:f[ \t][-+/0-9 \t]*\n){1,1024})"
     rb"|(?P<others>(?:v[nt][ \t][^\n\\]*\n){1,1024})"
 )
-FEW = 32  # lines that are sooner read one by one
+FEW = 32  # fewer lines are read faster one by one
 TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
 
 

@@ -120,8 +120,8 @@ class Rows(ABC):
             try:
                 place = self._row(place, steps)
             except IndexError:
-                told = f"the file ends in {element.name} {row + 1} of {element.rows}"
-                raise InputError(f"{self.end}{told}") from None
+                where = f"the file ends in {element.name} {row + 1} of {element.rows}"
+                raise InputError(f"{self.end}{where}") from None
         self._place = place
         kinds = {wanted.name: wanted.kind for wanted in element.properties}
         return [Column(kinds[name], *np.array(found[name], np.int64)) for name in names]
@@ -134,8 +134,9 @@ class Rows(ABC):
                 length = self.length(place, count)
                 place += first
             if wanted is not None:
-                wanted[0].append(place)
-                wanted[1].append(length)
+                starts, lengths = wanted
+                starts.append(place)
+                lengths.append(length)
             place += length * width
         if place > self._size:
             raise IndexError

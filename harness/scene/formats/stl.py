@@ -22,12 +22,12 @@ BEGINS = rb"(?is)solid\b.{0,2000}\bfacet\s+normal\b"
 HEADER = 84
 FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 KEYWORDS = {b"facet", b"outer", b"vertex", b"endloop", b"endfacet", b"solid", b"endsolid"}
-# The words of a facet where nothing is unusual, None for numbers; and the places of its vertices' coordinates.
+# The words of a facet where nothing is unusual, None for numbers; and the columns of its vertices' coordinates.
 REGULAR = [
     word if word.isalpha() else None
     for word in b"facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 endloop endfacet".split()
 ]
-NUMBERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
+NUMBERS = [column for column, word in enumerate(REGULAR) if word is None][3:]  # behind those of the normal
 BLOCK = 1_000_000  # bytes of text that are looked at together
 CONTROL = re.compile(rb"[\0-\x08\x0e-\x19]")  # bytes that no text has
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,12 +42,6 @@ def as_text(content: bytes) -> bytes:
     if b"\r" in content:
         content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return content
-
-
-def lines(text: bytes) -> Iterator[tuple[int, bytes]]:
-    """The lines of a text, counted from 1, each without what follows `#`."""
-    for number, line in enumerate(io.BytesIO(text), 1):
-        yield number, (line[: line.index(b"#")] if b"#" in line else line)
 
 
 def floats(words: Sequence[bytes], line: int) -> list[float]:

@@ -13,20 +13,20 @@ from harness.scene.simplify import normalised
 CUBE_FACES = 12
 
 
-def make_solid(name: str, faces: int | None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Vertices and faces of a solid, its minimal bounding sphere of diameter 1 about the origin.
+def make(name: str, faces: int | None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Vertices and faces of a mesh, its minimal bounding sphere of diameter 1 about the origin.
 
     Parameters
     ----------
-    name : one of `SOLIDS`
+    name : one of `MAKERS`
     faces : how many; None is possible for the cube, which has 12
 
     Raises
     ------
     InputError
-        If the solid cannot have so many faces.
+        If the mesh cannot have so many faces.
     """
-    return SOLIDS[name](faces)
+    return MAKERS[name](faces)
 
 
 def _pumpkin(faces: int | None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
@@ -51,4 +51,4 @@ def _cube(faces: int | None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     return normalised(np.asarray(solid.vertices, np.float64)), np.asarray(solid.faces, np.int32)
 
 
-SOLIDS = {"pumpkin": _pumpkin, "icosphere": _icosphere, "cube": _cube}
+MAKERS = {"pumpkin": _pumpkin, "icosphere": _icosphere, "cube": _cube}

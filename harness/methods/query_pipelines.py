@@ -14,9 +14,9 @@ import numpy as np
 
 from harness.arrays import Flags, Pairs
 from harness.measure.clocks import Clock
-from harness.methods.impact_times import FrameMotion, ImpactFinder, half_ways
+from harness.methods.impact_times import FrameMotion, ImpactFinder, half_moves
 from harness.methods.near_pairs import NearFinder
-from harness.methods.observer import Folds, Observer, Onsets, conserved
+from harness.methods.observer import Folds, Observer, OnsetFinder, conserved
 from harness.methods.stages import Plan
 from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.answers import NearLog
@@ -45,13 +45,13 @@ class _Flight:
     clock: Clock
     observer: Observer
     folds: Folds
-    onsets: Onsets
+    onsets: OnsetFinder
     observed: bool
     near: int = 0
     log: NearLog | None = None
 
 
-class Asking(ABC):
+class QueryPipeline(ABC):
     """The plan of a run with a query, assembled: frames at k dt, k = 1 … frames.
 
     Parameters
@@ -96,7 +96,7 @@ class Asking(ABC):
             Clock(*PHASES),
             observer,
             Folds(trajectory),
-            Onsets(len(scene.bodies)),
+            OnsetFinder(len(scene.bodies)),
             observed,
             log=self._log(traced),
         )
@@ -136,12 +136,12 @@ class Asking(ABC):
         return None
 
 
-class NearAsking(Asking):
+class NearPipeline(QueryPipeline):
     """Asks which pairs are near in every frame, and how far apart they are.
 
     Parameters
     ----------
-    scene, plan : as for `Asking`
+    scene, plan : as for `QueryPipeline`
     finder : loaded with the scene; None where the plan leaves pairs out
     gaps : whether it is asked how far apart they are; else what a finder may say of it has no meaning
     """
@@ -188,12 +188,12 @@ class NearAsking(Asking):
         return NearLog() if traced else None
 
 
-class ImpactAsking(Asking):
+class ImpactPipeline(QueryPipeline):
     """Asks which pairs begin to touch between one frame and the next, and when.
 
     Parameters
     ----------
-    scene, plan : as for `Asking`
+    scene, plan : as for `QueryPipeline`
     finder : loaded with the scene; None where the plan leaves pairs out
     """
 
@@ -212,7 +212,7 @@ class ImpactAsking(Asking):
 
     def begin(self, flight: _Flight) -> None:
         if self._finder is not None:
-            self._finder.begin(half_ways(self._scene, self._scene.bodies.velocities, flight.law.dt))
+            self._finder.begin(half_moves(self._scene, self._scene.bodies.velocities, flight.law.dt))
 
     def frame(self, flight: _Flight, number: int) -> None:
         law = flight.law
