@@ -97,5 +97,5 @@ def test_what_stands_there_and_is_no_file_is_called_what_it_is(places):
     for name, what in whats.items():
         with pytest.raises(InputError, match=f": it is {what}$"):
             locate_mesh(f"{name}.obj", places / "lab")
-    with pytest.raises(InputError, match="in meshes/$"):  # that there is such a folder outside is not told
+    with pytest.raises(InputError, match=r"in meshes/$"):  # that there is such a folder outside is not told
         locate_mesh("../../", places / "lab")
