@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from harness.experiment.experiment import Experiment
     from harness.runner.executor import Executor
     from harness.runner.schedule import RunSelection
-    from harness.runner.sweep import Summary
+    from harness.runner.sweep import SweepSummary
     from harness.scene.scene_files import Opened
 
 DATABASE = "results/results.db"
@@ -198,7 +198,7 @@ def _print_what_would_be_done(
     say(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
-def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
+def _print_outcome(summary: SweepSummary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
     import shlex
 
