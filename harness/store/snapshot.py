@@ -67,7 +67,7 @@ def snapshot(path: str | Path, sweep: int) -> Snapshot:
         metrics: dict[int, dict[str, float]] = defaultdict(dict)
         for run, name, value in connection.execute(
             "SELECT run, name, value FROM metric WHERE run IN (SELECT value FROM json_each(?))",
-            (json.dumps([row[0] for row in rows]),),
+            (json.dumps([run for run, *_ in rows]),),
         ):
             metrics[run][name] = math.nan if value is None else value
         controls = {

@@ -1,4 +1,4 @@
-"""Reading results: the file turned into a table of runs and into records. Nothing else reads the file.
+"""Reading results: the file turned into a table of runs and into records.
 
 Readers cannot write and never wait for a sweep: each sees every run that had finished when it began to read.
 """
@@ -97,10 +97,10 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
         metrics: dict[int, dict[str, float]] = defaultdict(dict)
         for run, name, value in connection.execute(
             "SELECT run, name, value FROM metric WHERE run IN (SELECT value FROM json_each(?)) ORDER BY metric.rowid",
-            (json.dumps([row[0] for row in rows]),),
+            (json.dumps([run for run, *_ in rows]),),
         ):
             metrics[run][name] = math.nan if value is None else value
-    points = {row[2]: json.loads(row[3]) for row in rows}
+    points = {key: json.loads(parameters) for _, _, key, parameters, *_ in rows}
     return [
         RunRecord(
             experiment=name,
