@@ -5,6 +5,8 @@ The commands call these functions too; importing this module imports nothing hea
 
 from __future__ import annotations
 
+from harness.store import DATABASE
+
 # False, as that of `typing`, whose import takes longest of all that comes before Ctrl-C is heeded.
 TYPE_CHECKING = False
 
@@ -190,7 +192,7 @@ def run(experiment: Experiment) -> pd.DataFrame:
     return run(experiment, open_all(experiment.mesh_paths.values(), experiment.poses_paths.values()))
 
 
-def results(db: str | Path = "results/results.db") -> pd.DataFrame:
+def results(db: str | Path = DATABASE) -> pd.DataFrame:
     """The runs that a database keeps, in the form of `run`.
 
     Examples

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from harness.cli.streams import speaks_unicode
 from harness.errors import InputError
+from harness.store import DATABASE
 
 if TYPE_CHECKING:
     from harness.store.records import ComparisonRecord, ExperimentRecord, RunRecord, VerdictRow
@@ -23,9 +24,7 @@ _FIXED = ("experiment", "repeat", "status", "reason")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
-    parser.add_argument(
-        "--db", type=Path, default=Path("results/results.db"), help="the results (default: %(default)s)"
-    )
+    parser.add_argument("--db", type=Path, default=Path(DATABASE), help="the results (default: %(default)s)")
     parser.add_argument(
         "--format",
         choices=("csv", "json"),

@@ -139,14 +139,15 @@ def surveyed(
         for query in measure.family_queries:
             asked = names if query == "collision" else (*names, OWN)
             kinds = [(mesh, family) for mesh in files.meshes or (None,) for family in measure.families]
-            kinds = [kind for kind in kinds if kind[1] != RESTING]
+            kinds = [(mesh, family) for mesh, family in kinds if family != RESTING]
             for mesh, family in kinds if recorded is None else [*kinds, (only, RESTING)]:
                 of = f" of {mesh.name}" if mesh is not None and shape != "sphere" else ""
                 how = (measure.family_poses, asked, budget, SURVEYS[query], recorded, file_of)
                 tasks.append((f"{query}, {family}, {shape}{of}", partial(_part, shape, mesh, family, *how)))
 
     def begin(place: int) -> None:
-        progress(f"{tasks[place][0]}: {measure.family_poses} poses")
+        said, _ = tasks[place]
+        progress(f"{said}: {measure.family_poses} poses")
 
     left = list(budget.left)
     parts = dict(_done([task for _, task in tasks], workers, begin))
