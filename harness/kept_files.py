@@ -10,6 +10,7 @@ import os
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from time import time
@@ -74,10 +75,7 @@ def keep_arrays(kind: str, name: str, arrays: Mapping[str, NDArray[Any]]) -> Non
 
 def _keep(path: Path, content: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    for old in path.parent.glob("*"):
-        with suppress(OSError):
-            if old.stat().st_mtime < time() - UNUSED:
-                old.unlink()
+    _remove_unused(path.parent)
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
     try:
         with os.fdopen(handle, "wb") as file:
@@ -86,3 +84,12 @@ def _keep(path: Path, content: bytes) -> None:
     except BaseException:
         os.unlink(name)
         raise
+
+
+@cache
+def _remove_unused(home: Path) -> None:
+    """Once in a process, at the first file that it keeps there."""
+    for old in home.glob("*"):
+        with suppress(OSError):
+            if old.stat().st_mtime < time() - UNUSED:
+                old.unlink()

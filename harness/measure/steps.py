@@ -16,7 +16,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from ruptures import Pelt
 from scipy import special
 
 # How many degrees of freedom the noise of all series counts for.
@@ -68,6 +67,8 @@ def candidates(values: Sequence[float], common: float | None, floor: float) -> l
     n = len(signal)
     if n < 4:
         return []
+    from ruptures import Pelt  # a second of imports, which few reports have series long enough for
+
     own = max(_noise(signal), _LEAST)
     unit = own if common is None else max(common, _LEAST)
     search = Pelt(model="l2", min_size=2, jump=1).fit(signal / min(own, unit))

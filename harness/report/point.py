@@ -92,11 +92,10 @@ class MeasuredPoint:
 
         To be paired with another point's: times of two machines are not compared.
         """
-        if metric not in self.good.columns:
-            return {}
         if metric not in self._by_place:
-            rows = zip(self.good["repeat"], self.good["machine"], self.good[metric], strict=True)
-            self._by_place[metric] = {(int(r), str(m)): float(value) for r, m, value in rows if math.isfinite(value)}
+            columns, rows = self.numbers or (self._numbers, slice(None))
+            found = zip(self._places, columns[metric][rows].tolist(), strict=True) if metric in columns else ()
+            self._by_place[metric] = {place: value for place, value in found if math.isfinite(value)}
         return self._by_place[metric]
 
     def summary(self, metric: str) -> Summary | None:
@@ -140,6 +139,11 @@ class MeasuredPoint:
     @cached_property
     def _numbers(self) -> Numbers:
         return numbers_of(self.good)
+
+    @cached_property
+    def _places(self) -> list[tuple[int, str]]:
+        """Repeat and machine of every good run."""
+        return [(int(r), str(m)) for r, m in zip(self.good["repeat"], self.good["machine"], strict=True)]
 
     @cached_property
     def _by_place(self) -> dict[str, dict[tuple[int, str], float]]:

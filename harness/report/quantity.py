@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from statistics import median
 
 import numpy as np
 
@@ -54,7 +55,7 @@ def scale(values: Iterable[float], unit: str) -> Scale:
     if unit not in _PREFIXES:
         return Scale(1.0, "" if unit == "1" else unit)
     sizes = [abs(value) for value in values if math.isfinite(value) and value != 0.0]
-    middle = float(np.median(sizes)) if sizes else 1.0
+    middle = median(sizes) if sizes else 1.0
     for factor, symbol in _PREFIXES[unit]:
         if middle >= factor * 0.9995:
             return Scale(factor, symbol)
@@ -164,7 +165,7 @@ def _decimals(value: float) -> int:
     """Decimals that leave three significant digits."""
     if value == 0.0 or not math.isfinite(value):
         return 0
-    return min(9, max(0, 2 - math.floor(math.log10(float(f"{abs(value):.2e}")))))
+    return min(9, max(0, 2 - int(f"{value:.2e}".partition("e")[2])))
 
 
 def _signed(text: str) -> str:

@@ -322,6 +322,7 @@ def test_another_axis_is_swept_once_bodies_crowd_along_the_first():
     assert detector.pair_tests - before == min(pairs_overlapping(flat, radii, axis) for axis in range(2))
 
 
+@pytest.mark.slow
 def test_one_body_far_outside_costs_nothing():
     radii = np.full(3000, 0.5)
     positions, box = crowd(radii, 0.1)

@@ -72,6 +72,7 @@ def test_a_refusal_that_is_not_expected_fails_the_sweep(tmp_path, monkeypatch, c
     assert "rejected is 0 for count=2 (expected exactly 1)" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_frames_are_held_beside_a_copy_of_the_memory_that_they_cannot_do_without(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = PLAIN.replace("count: 4", "count: 40").replace("box: [5, 5, 5]", "box: [9, 9, 9]")

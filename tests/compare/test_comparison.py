@@ -103,6 +103,7 @@ def test_backends_that_there_are_not_are_an_error(tmp_path, capsys):
     assert main(["compare", written(tmp_path, "sphere"), "--backends", "fcl"]) == 2
 
 
+@pytest.mark.slow
 def test_a_backend_that_hangs_over_its_first_scene_is_not_asked_about_others(defective):
     said = []
     scene = random_scene("sphere", 3, 3.0)

@@ -72,6 +72,7 @@ def test_one_that_takes_near_poses_for_the_same_is_caught_at_the_small_steps(lia
     assert named(found) == {"caches"}
 
 
+@pytest.mark.slow
 def test_one_that_does_not_answer_is_given_up_and_named(liar):
     said = []
     found = compare([crowd()] * 3, ["fcl", liar("sleeps")], said.append, timeout=0.3)

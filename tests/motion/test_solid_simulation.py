@@ -233,6 +233,7 @@ def test_ten_bodies_that_cannot_fit_into_their_box_come_to_an_end(shape, respons
         assert simulation.kinetic_energy == pytest.approx(0.5 * (bodies.masses @ (bodies.velocities**2).sum(axis=1)))
 
 
+@pytest.mark.slow
 def test_energy_is_kept_over_thousands_of_hits_and_no_body_escapes():
     scene = crowd(cube_mesh(), 60, 2.6, 1)
     simulation = fly(scene, np.inf, tolerance=1e-6, max_events=20_000)

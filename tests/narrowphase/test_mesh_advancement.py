@@ -103,6 +103,7 @@ def test_nothing_touches_before_an_impact_and_at_it_the_gap_is_within_tolerance(
             assert truth.touch(0.0) or truth.distance(0.0) <= 1.01e-7
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(40))
 @given(st.integers(0, 10**6), st.sampled_from(MESHES))
 def test_surfaces_meet_no_earlier_than_their_hulls(seed, name):

@@ -96,6 +96,7 @@ def test_what_is_malformed_or_too_long_is_refused_and_the_next_is_answered(serve
     assert capfd.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_requests_at_once_are_answered_in_turn_and_too_many_are_refused(server):
     held = [socket.create_connection((HOST, server.server_port), timeout=20) for _ in range(MOST_REQUESTS)]
     try:

@@ -70,6 +70,7 @@ def test_every_change_of_an_exact_count_is_a_step(swept):
     assert {step.sweep.commit for _, step in machine.steps} == {"commit4"}
 
 
+@pytest.mark.slow
 def test_machines_are_kept_apart(swept):
     swept([1.0] * 5)
     machines = history(swept([30.0] * 5, machine=64))

@@ -69,6 +69,7 @@ def test_the_meshes_here_are_what_the_command_makes(name, solid, faces):
     assert cKDTree(here.vertices).query(made.vertices)[0].max() < limit
 
 
+@pytest.mark.slow
 def test_the_pumpkins_have_the_same_extent_and_nearly_the_same_shape():
     pumpkins = [read_mesh(MESHES / f"pumpkin-{faces}.ply") for faces in (1753, 9868, 17001)]
     assert len({round(mesh.diameter, 13) for mesh in pumpkins}) == 1

@@ -59,6 +59,7 @@ CLOSED_FORMS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "second", "time"), CLOSED_FORMS)
 def test_a_bracket_around_the_closed_form_is_proven_and_one_beside_it_is_refused(first, second, time):
     assert reason(first, second, *around(time)) == ""
