@@ -5,8 +5,6 @@ The commands call these functions too; importing this module imports nothing hea
 
 from __future__ import annotations
 
-from harness.store import DATABASE
-
 # False, as that of `typing`, whose import takes longest of all that comes before Ctrl-C is heeded.
 TYPE_CHECKING = False
 
@@ -20,6 +18,9 @@ if TYPE_CHECKING:
     from harness.motion.hits import Trace
     from harness.pair.body import Body
     from harness.pair.distance import Distance
+
+DATABASE = "results/results.db"
+"""Where results are kept unless somebody names another file."""
 
 __all__ = ["Body", "distance", "load", "results", "run", "time_of_impact", "touching", "trace"]
 

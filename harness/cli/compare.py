@@ -18,11 +18,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.arguments import count, names, seconds
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 from harness.errors import InputError
-from harness.store import DATABASE
 
 if TYPE_CHECKING:
     from harness.cli.surveying import Surveyed

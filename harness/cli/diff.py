@@ -11,9 +11,9 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.json_document import json_text
 from harness.cli.width import say
-from harness.store import DATABASE
 
 if TYPE_CHECKING:
     from harness.report.sweeps.difference import Difference, PointDifference

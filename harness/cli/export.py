@@ -12,9 +12,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.streams import speaks_unicode
 from harness.errors import InputError
-from harness.store import DATABASE
 
 if TYPE_CHECKING:
     from harness.store.records import ComparisonRecord, ExperimentRecord, RunRecord, VerdictRow

@@ -9,9 +9,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.json_document import json_text
 from harness.cli.width import say
-from harness.store import DATABASE
 
 if TYPE_CHECKING:
     from harness.measure.statistics import Summary

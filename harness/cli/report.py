@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from harness.store import DATABASE
+from harness import DATABASE
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

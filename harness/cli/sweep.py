@@ -9,12 +9,12 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.arguments import count
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 from harness.errors import InputError, Problem
 from harness.experiment import FOLDER
-from harness.store import DATABASE
 
 if TYPE_CHECKING:
     from harness.experiment.experiment import Experiment
