@@ -10,6 +10,7 @@ from typing import Any
 
 from harness.store.connection import as_input_error
 from harness.store.history import reading
+from harness.store.selections import EXPERIMENT_OF_POINT
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,7 @@ def past_runs(path: str | Path, metric: str) -> list[PastRun]:
         The file is missing, empty, damaged, another program's, or of another schema version.
     """
     with reading(path) as connection, as_input_error(Path(path)):
-        points = connection.execute(
-            "SELECT point.id, parameters, (SELECT min(name) FROM experiment_point "
-            "JOIN experiment ON experiment.id = experiment_point.experiment "
-            "WHERE experiment_point.point = point.id) FROM point"
-        ).fetchall()
+        points = connection.execute(f"SELECT point.id, parameters, {EXPERIMENT_OF_POINT} FROM point").fetchall()
         rows = connection.execute(
             "SELECT fingerprint, sweep, point, value, timing_grade FROM run JOIN machine ON machine.id = run.machine "
             "JOIN metric ON metric.run = run.id WHERE status = 'ok' AND name = ? AND value IS NOT NULL ORDER BY run.id",
