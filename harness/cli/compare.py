@@ -145,8 +145,8 @@ def _compared(
             rows += [(row, True) for row in atlas.rows]
             found_of_all.atlases.append(atlas)
             found_of_all.kept += [
-                (experiment.name, pair, survey_key(experiment, meshes, pair[0]), document_of)
-                for pair, document_of in atlas.documents()
+                (experiment.name, (engine, judge), survey_key(experiment, meshes, engine), document_of)
+                for (engine, judge), document_of in atlas.documents()
             ]
             continue
         names, lacking = backends_of(experiment, chosen)

@@ -172,8 +172,9 @@ def _survey(experiment: Experiment, meshes: Opened, wanted: Sequence[str]) -> _C
     found = surveyed(experiment, meshes, wanted, Budget(seconds))
     documents, lines = [], []
     for pair, document in found.documents():
-        documents.append((pair, survey_key(experiment, meshes, pair[0]), document))
-        mine = [cell for cell in found.atlas.cells if cell.engine == pair[0]]
+        engine, _ = pair
+        documents.append((pair, survey_key(experiment, meshes, engine), document))
+        mine = [cell for cell in found.atlas.cells if cell.engine == engine]
         verdicts, beyond = sum(cell.verdicts for cell in mine), sum(cell.beyond for cell in mine)
-        lines.append(f"{pair[0]}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
+        lines.append(f"{engine}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
     return _Compared(documents, [*lines, *(f"left out: {line}" for line in found.found.left_out)])

@@ -173,26 +173,34 @@ def cross_check(
                 for pair, found in compare_all(pose_sets, asked, progress, budget=budget).items():
                     compared.setdefault(pair, Comparison()).add(found)
     for pair, found in compared.items():
-        free = next((point for point in experiment.points if point.motion.response != "none"), None)
-        if not set(pair) <= set(names.get("collision", ())):
-            free = None
-        if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
-            if budget.spent:
-                budget.leave_out(f"{pair[0]} and {pair[1]} in flight: not run, the time was spent")
-                yield pair, found
-                continue
-            motion = free.motion
-            frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
-            if budget.every > 1:
-                frames = max(1, frames // budget.every)
-                budget.leave_out(f"{pair[0]} and {pair[1]} in flight: no more than {frames} frames are flown")
-            progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
-            found.add(
-                run_both(
-                    scene, pair, frames=frames, dt=motion.dt, response=motion.response, restitution=motion.restitution
-                )
-            )
+        if set(pair) <= set(names.get("collision", ())):
+            found.add(_free_runs(experiment, meshes, pair, extent, progress, budget))
         yield pair, found
+
+
+def _free_runs(
+    experiment: Experiment,
+    meshes: Opened,
+    pair: tuple[str, str],
+    extent: Extent,
+    progress: Callable[[str], None],
+    budget: Budget,
+) -> Comparison:
+    """What is found of two backends in flight, in the first scene whose bodies answer hits; nothing without any."""
+    free = next((point for point in experiment.points if point.motion.response != "none"), None)
+    if free is None or (scene := _scene(experiment, free, meshes)) is None:
+        return Comparison()
+    in_flight = f"{' and '.join(pair)} in flight"
+    if budget.spent:
+        budget.leave_out(f"{in_flight}: not run, the time was spent")
+        return Comparison()
+    motion = free.motion
+    frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
+    if budget.every > 1:
+        frames = max(1, frames // budget.every)
+        budget.leave_out(f"{in_flight}: no more than {frames} frames are flown")
+    progress(f"{in_flight}: {len(scene.bodies)} bodies, {frames} frames")
+    return run_both(scene, pair, frames=frames, dt=motion.dt, response=motion.response, restitution=motion.restitution)
 
 
 def reductions(found: Comparison, meshes: Opened, most: int, known: Known | None = None) -> list[Reduced]:

@@ -150,14 +150,16 @@ class Tradeoff:
     def ranked(self, target: float) -> list[tuple[Curve, Setting]]:
         """The methods that reach an error, each at its cheapest setting, the cheapest method first."""
         found = [(curve, cheapest) for curve in self.curves if (cheapest := curve.cheapest(target)) is not None]
-        return sorted(found, key=lambda entry: entry[1].cost.median)
+        found.sort(key=lambda entry: entry[-1].cost.median)
+        return found
 
     def ratios(self, target: float) -> list[Costed]:
         """The same, each with how many times it costs what the first costs."""
         ranked = self.ranked(target)
         if not ranked:
             return []
-        best = ranked[0][1].point
+        (_, cheapest), *_ = ranked
+        best = cheapest.point
         return [
             Costed(
                 curve, found, times_worse(found.point, best, COST), tell_apart(found.point, best, COST, self.resolution)
