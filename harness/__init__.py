@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from harness.pair.body import Body
     from harness.pair.distance import Distance
 
+DATABASE = "results/results.db"
+"""Where results are kept unless somebody names another file."""
+
 __all__ = ["Body", "distance", "load", "results", "run", "time_of_impact", "touching", "trace"]
 
 
@@ -190,7 +193,7 @@ def run(experiment: Experiment) -> pd.DataFrame:
     return run(experiment, open_all(experiment.mesh_paths.values(), experiment.poses_paths.values()))
 
 
-def results(db: str | Path = "results/results.db") -> pd.DataFrame:
+def results(db: str | Path = DATABASE) -> pd.DataFrame:
     """The runs that a database keeps, in the form of `run`.
 
     Examples

@@ -124,6 +124,9 @@ REFERENCE_ALGORITHM: ReferenceAlgorithm = "predictive"
 OWN_BACKEND = "fcl"
 """The backend that answers single questions, so that every algorithm of this program can put its pairs to it."""
 
+OWN = "own"
+"""The name under which the engine of this program is asked about one pair, as if it were a backend."""
+
 EXACT_FRAMES = f"{OWN_BACKEND}/grid"
 """The pipeline that is asked of frames, or beside all backends, where any exact one of this program would do."""
 

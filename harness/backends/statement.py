@@ -160,7 +160,7 @@ def _say_elsewhere(name: str, seconds: float) -> Statement:
             return Statement(f"importing it did not end within {seconds:g} s")
         if not isinstance(answer, bytes):
             return Statement(f"importing it ended its process with {child.end()}")
-    return _read(answer) or Statement("what it says of itself is garbage")
+    return _read(answer) or Statement("what it says of itself cannot be read")
 
 
 def _say_within_limits(name: str, channel: Channel) -> None:

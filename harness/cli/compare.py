@@ -18,6 +18,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
+from harness.cli.arguments import count, names, seconds
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 from harness.errors import InputError
@@ -30,8 +32,6 @@ if TYPE_CHECKING:
     from harness.experiment.experiment import Experiment
     from harness.scene.scene_files import Opened
 
-DATABASE = "results/results.db"
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command takes."""
@@ -43,10 +43,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "alone for its own pipeline; those of the experiment where it names several, else fcl,pybullet",
     )
     parser.add_argument(
-        "--budget", metavar="SECONDS", type=_seconds, help="stop asking after so long, and say what was left out"
+        "--budget", metavar="SECONDS", type=seconds, help="stop asking after so long, and say what was left out"
     )
     parser.add_argument(
-        "--every", metavar="N", type=_count, default=1, help="ask about every N-th pose only, and say so"
+        "--every", metavar="N", type=count, default=1, help="ask about every N-th pose only, and say so"
     )
     add_override_argument(parser)
     parser.add_argument(
@@ -145,8 +145,8 @@ def _compared(
             rows += [(row, True) for row in atlas.rows]
             found_of_all.atlases.append(atlas)
             found_of_all.kept += [
-                (experiment.name, pair, survey_key(experiment, meshes, pair[0]), document_of)
-                for pair, document_of in atlas.documents()
+                (experiment.name, (engine, judge), survey_key(experiment, meshes, engine), document_of)
+                for (engine, judge), document_of in atlas.documents()
             ]
             continue
         names, lacking = backends_of(experiment, chosen)
@@ -191,17 +191,17 @@ def _show(found: _Findings, files: dict[int, str], *, as_json: bool) -> None:
 
 def _chosen(text: str | None) -> tuple[str, ...]:
     """The backends and methods that `--backends` names."""
-    from harness.backends.registry import names
+    from harness.backends.registry import names as declared
     from harness.experiment.messages import listed, near, shown
     from harness.vocabulary import ALGORITHMS, QUERIES, PipelineName, algorithms_of
 
     if text is None:
         return ()
-    chosen = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    chosen = tuple(dict.fromkeys(names(text)))
     for name in chosen:
         backend, algorithm = PipelineName.read(name)
-        if backend not in names():
-            hint = near(backend, names()) or f"; there are {listed(names())}"
+        if backend not in declared():
+            hint = near(backend, declared()) or f"; there are {listed(declared())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
         # of queries other than collision also the backend's own; which experiments ask is known when they are read
         possible = [word for query in QUERIES for word in algorithms_of(backend, query) if ALGORITHMS[word].stepped]
@@ -321,23 +321,6 @@ def _print(found: Comparison) -> None:
         say(_sentence(case))
     for failure in found.failures:
         say(failure.sentence)
-
-
-def _seconds(text: str) -> float:
-    number = float(text)
-    if not number > 0.0:
-        raise ValueError
-    return number
-
-
-def _count(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
-
-
-_seconds.__name__, _count.__name__ = "number of seconds", "number"  # argparse names them in its messages
 
 
 def _asked(counts: Counts) -> str:

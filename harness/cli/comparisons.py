@@ -16,7 +16,6 @@ from harness.cli.crosscheck import (
     SHOWN,
     SWEPT,
     Asked,
-    Meshes,
     backends_of,
     cross_check,
     event_methods,
@@ -32,6 +31,7 @@ from harness.compare.budget import Budget
 from harness.compare.document import Known
 from harness.compare.outcome import TIMED, Comparison, Failure
 from harness.experiment.experiment import Experiment
+from harness.scene.scene_files import Opened
 from harness.store.database import Database
 from harness.vocabulary import EXACT_FRAMES
 from harness.workers import shared_out, usable_cores
@@ -67,7 +67,7 @@ class _Task:
 
 
 def compare_asked(
-    experiments: Sequence[Experiment], meshes: Meshes, database: Database, *, command: str, fresh: bool, quiet: bool
+    experiments: Sequence[Experiment], meshes: Opened, database: Database, *, command: str, fresh: bool, quiet: bool
 ) -> list[str]:
     """Compare where an experiment asks for it, unless that was done; each is kept as soon as it is made.
 
@@ -103,7 +103,7 @@ def compare_asked(
     return [line for _, mine in sorted(lines.items()) for line in mine]
 
 
-def _tasks(experiment: Experiment, meshes: Meshes, database: Database, done: Collection[str]) -> Iterator[_Task]:
+def _tasks(experiment: Experiment, meshes: Opened, database: Database, done: Collection[str]) -> Iterator[_Task]:
     if experiment.measure.families:
         wanted = [name for name in engines() if survey_key(experiment, meshes, name) not in done]
         if wanted:
@@ -126,7 +126,7 @@ def _tasks(experiment: Experiment, meshes: Meshes, database: Database, done: Col
 
 def _cross_check(
     experiment: Experiment,
-    meshes: Meshes,
+    meshes: Opened,
     asked: Asked,
     events: tuple[str, ...],
     keys: dict[Pair, str],
@@ -166,14 +166,15 @@ def _outcome(found: Comparison) -> str:
     return f"{verdicts} verdicts, {len(found.cases)} really disagree{both}"
 
 
-def _survey(experiment: Experiment, meshes: Meshes, wanted: Sequence[str]) -> _Compared:
+def _survey(experiment: Experiment, meshes: Opened, wanted: Sequence[str]) -> _Compared:
     """Ask the engines about families of poses."""
     seconds = SWEPT_SECONDS if experiment.measure.tier == "default" else None
     found = surveyed(experiment, meshes, wanted, Budget(seconds))
     documents, lines = [], []
     for pair, document in found.documents():
-        documents.append((pair, survey_key(experiment, meshes, pair[0]), document))
-        mine = [cell for cell in found.atlas.cells if cell.engine == pair[0]]
+        engine, _ = pair
+        documents.append((pair, survey_key(experiment, meshes, engine), document))
+        mine = [cell for cell in found.atlas.cells if cell.engine == engine]
         verdicts, beyond = sum(cell.verdicts for cell in mine), sum(cell.beyond for cell in mine)
-        lines.append(f"{pair[0]}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
+        lines.append(f"{engine}: {verdicts} verdicts, {beyond} wrong beyond its tolerance")
     return _Compared(documents, [*lines, *(f"left out: {line}" for line in found.found.left_out)])

@@ -56,8 +56,6 @@ DEFAULT_OF: Mapping[Query, tuple[str, str]] = {"impact": (OWN_BACKEND, LIBRARY_I
 Asked = dict[Query, tuple[str, ...]]
 """By query, the methods that are asked it."""
 
-Meshes = Opened
-
 
 @dataclass(frozen=True)
 class Extent:
@@ -148,7 +146,7 @@ def _stepped(name: str) -> bool:
 
 def cross_check(
     experiment: Experiment,
-    meshes: Meshes,
+    meshes: Opened,
     names: Asked,
     extent: Extent,
     progress: Callable[[str], None] = lambda line: None,
@@ -175,29 +173,37 @@ def cross_check(
                 for pair, found in compare_all(pose_sets, asked, progress, budget=budget).items():
                     compared.setdefault(pair, Comparison()).add(found)
     for pair, found in compared.items():
-        free = next((point for point in experiment.points if point.motion.response != "none"), None)
-        if not set(pair) <= set(names.get("collision", ())):
-            free = None
-        if free is not None and (scene := _scene(experiment, free, meshes)) is not None:
-            if budget.spent:
-                budget.leave_out(f"{pair[0]} and {pair[1]} in flight: not run, the time was spent")
-                yield pair, found
-                continue
-            motion = free.motion
-            frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
-            if budget.every > 1:
-                frames = max(1, frames // budget.every)
-                budget.leave_out(f"{pair[0]} and {pair[1]} in flight: no more than {frames} frames are flown")
-            progress(f"{pair[0]} and {pair[1]} in flight: {len(scene.bodies)} bodies, {frames} frames")
-            found.add(
-                run_both(
-                    scene, pair, frames=frames, dt=motion.dt, response=motion.response, restitution=motion.restitution
-                )
-            )
+        if set(pair) <= set(names.get("collision", ())):
+            found.add(_free_runs(experiment, meshes, pair, extent, progress, budget))
         yield pair, found
 
 
-def reductions(found: Comparison, meshes: Meshes, most: int, known: Known | None = None) -> list[Reduced]:
+def _free_runs(
+    experiment: Experiment,
+    meshes: Opened,
+    pair: tuple[str, str],
+    extent: Extent,
+    progress: Callable[[str], None],
+    budget: Budget,
+) -> Comparison:
+    """What is found of two backends in flight, in the first scene whose bodies answer hits; nothing without any."""
+    free = next((point for point in experiment.points if point.motion.response != "none"), None)
+    if free is None or (scene := _scene(experiment, free, meshes)) is None:
+        return Comparison()
+    in_flight = f"{' and '.join(pair)} in flight"
+    if budget.spent:
+        budget.leave_out(f"{in_flight}: not run, the time was spent")
+        return Comparison()
+    motion = free.motion
+    frames = motion.frames if extent.flown is None else min(motion.frames, extent.flown)
+    if budget.every > 1:
+        frames = max(1, frames // budget.every)
+        budget.leave_out(f"{in_flight}: no more than {frames} frames are flown")
+    progress(f"{in_flight}: {len(scene.bodies)} bodies, {frames} frames")
+    return run_both(scene, pair, frames=frames, dt=motion.dt, response=motion.response, restitution=motion.restitution)
+
+
+def reductions(found: Comparison, meshes: Opened, most: int, known: Known | None = None) -> list[Reduced]:
     """The cases of a comparison, the first `most` of every backend made smaller, if that is not `known` already."""
     return reduced(found, {mesh.identity: path.name for path, mesh in meshes.items()}, most, known)
 
@@ -213,7 +219,7 @@ def kept(experiment: Experiment, found: Comparison, rows: list[Reduced]) -> dict
 
 
 def key_of(
-    experiment: Experiment, meshes: Meshes, pair: tuple[str, str], extent: Extent, budget: Budget | None = None
+    experiment: Experiment, meshes: Opened, pair: tuple[str, str], extent: Extent, budget: Budget | None = None
 ) -> str:
     """Of two comparisons with the same key the second would find nothing new."""
     points = sorted({point_key(point, files_of(experiment, point, meshes)) for point in experiment.points})
@@ -222,13 +228,13 @@ def key_of(
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def keys_of(experiment: Experiment, meshes: Meshes) -> list[str]:
+def keys_of(experiment: Experiment, meshes: Opened) -> list[str]:
     """The keys of the points whose answers `timed_otherwise` holds against what is said here."""
     return [point_key(point, files_of(experiment, point, meshes)) for point in _asked_of_a_library(experiment)]
 
 
 def timed_otherwise(
-    experiment: Experiment, meshes: Meshes, digests: Mapping[str, Collection[float]], budget: Budget
+    experiment: Experiment, meshes: Opened, digests: Mapping[str, Collection[float]], budget: Budget
 ) -> Iterator[tuple[str, str]]:
     """Backends whose runs answered other hits than they answer when the same motion is put to them frame by frame.
 
@@ -266,7 +272,7 @@ def _asked_of_a_library(experiment: Experiment) -> list[Point]:
     return [point for point in points if MethodName.of(point.parameters).short == point.engine.backend]
 
 
-def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, budget: Budget) -> Comparison:
+def _events(experiment: Experiment, meshes: Opened, name: str, extent: Extent, budget: Budget) -> Comparison:
     """A method that computes events, on every motion of the experiment."""
     whole = Comparison()
     points = [point for point in experiment.points if point.engine.query == "collision"]
@@ -278,14 +284,14 @@ def _events(experiment: Experiment, meshes: Meshes, name: str, extent: Extent, b
     return whole
 
 
-def _flown_sets(experiment: Experiment, meshes: Meshes, extent: Extent, query: Query) -> Iterator[PoseSet]:
+def _flown_sets(experiment: Experiment, meshes: Opened, extent: Extent, query: Query) -> Iterator[PoseSet]:
     """What the points of a query fly through, each scene once."""
     points = [point for point in experiment.points if point.engine.query == query]
     for point, scene, frames in _motions(experiment, meshes, extent, points, by_question=query != "collision"):
         yield flown(scene, frames, point.motion.dt, _question(point))
 
 
-def _hard_sets(experiment: Experiment, meshes: Meshes, extent: Extent, query: Query) -> Iterator[PoseSet]:
+def _hard_sets(experiment: Experiment, meshes: Opened, extent: Extent, query: Query) -> Iterator[PoseSet]:
     """The hard poses of every shape of a mesh that the points of a query draw bodies of."""
     points = [point for point in experiment.points if point.engine.query == query and point.scene.bodies is None]
     random = {(point.scene.shape, point.scene.mesh_names, _question(point)): point for point in points}
@@ -313,7 +319,7 @@ def _question(point: Point) -> Question:
 
 def _motions(
     experiment: Experiment,
-    meshes: Meshes,
+    meshes: Opened,
     extent: Extent,
     points: Sequence[Point],
     *,
@@ -338,7 +344,7 @@ def _motions(
             yield point, scene, frames
 
 
-def _scene(experiment: Experiment, point: Point, meshes: Meshes) -> Scene | None:
+def _scene(experiment: Experiment, point: Point, meshes: Opened) -> Scene | None:
     """The scene of a point; None where there is no pair."""
     try:
         scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)

@@ -11,6 +11,7 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.json_document import json_text
 from harness.cli.width import say
 
@@ -21,9 +22,7 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("before", metavar="SWEEP", nargs="?", type=int, help="number of the earlier sweep")
     parser.add_argument("after", metavar="SWEEP", nargs="?", type=int, help="number of the later sweep")
-    parser.add_argument(
-        "--db", metavar="FILE", default="results/results.db", help="the database (default: %(default)s)"
-    )
+    parser.add_argument("--db", metavar="FILE", default=DATABASE, help="the database (default: %(default)s)")
     parser.add_argument(
         "--fail-on",
         action="append",

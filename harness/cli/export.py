@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.streams import speaks_unicode
 from harness.errors import InputError
 
@@ -23,9 +24,7 @@ _FIXED = ("experiment", "repeat", "status", "reason")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of the command."""
-    parser.add_argument(
-        "--db", type=Path, default=Path("results/results.db"), help="the results (default: %(default)s)"
-    )
+    parser.add_argument("--db", type=Path, default=Path(DATABASE), help="the results (default: %(default)s)")
     parser.add_argument(
         "--format",
         choices=("csv", "json"),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
 from harness.cli.json_document import json_text
 from harness.cli.width import say
 
@@ -19,9 +20,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("experiments", metavar="EXPERIMENT", nargs="*", help="names of experiments (default: all)")
-    parser.add_argument(
-        "--db", metavar="FILE", default="results/results.db", help="the database (default: %(default)s)"
-    )
+    parser.add_argument("--db", metavar="FILE", default=DATABASE, help="the database (default: %(default)s)")
     parser.add_argument("--metric", default="run_seconds", help="what to follow (default: %(default)s)")
     parser.add_argument("--all", action="store_true", help="print every point, not only those with a step")
     parser.add_argument("--json", action="store_true", help="one JSON document on standard output")

@@ -6,12 +6,11 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from harness.cli.width import say
+from harness.experiment import FOLDER
 from harness.vocabulary import ALGORITHMS, QUERIES, Query, algorithms_of
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-FOLDER = "experiments"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -30,14 +30,12 @@ from harness.vocabulary import ALGORITHMS
 MOST_BODIES = 5000
 MOST_HITS = 200_000
 COLUMNS = (
-    *("algorithm", "backend", "shape", "bodies", "box ratio", "speed", "body hits", "wall hits", "pair tests"),
-    *("CPU time, ms", "simulated s per s"),
-)
-
-Meshes = Opened
+    "algorithm", "backend", "shape", "bodies", "box ratio", "speed", "body hits", "wall hits", "pair tests",
+    "CPU time, ms", "simulated s per s",
+)  # fmt: skip
 
 
-def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -> int:
+def serve(experiment: Experiment, meshes: Opened, show: Callable[[str], None]) -> int:
     """Serve the live page until Ctrl-C, or SIGTERM.
 
     Parameters
@@ -61,7 +59,7 @@ def serve(experiment: Experiment, meshes: Meshes, show: Callable[[str], None]) -
     return 0
 
 
-def _inputs(experiment: Experiment, meshes: Meshes) -> list[Input]:
+def _inputs(experiment: Experiment, meshes: Opened) -> list[Input]:
     """The inputs of the page, with the values of the first point."""
     point = experiment.points[0]
     leaves = point.parameters
@@ -83,7 +81,7 @@ def _inputs(experiment: Experiment, meshes: Meshes) -> list[Input]:
 
 
 def _answer(
-    experiment: Experiment, meshes: Meshes, servers: Servers, first: Mapping[str, str], asked: Mapping[str, str]
+    experiment: Experiment, meshes: Opened, servers: Servers, first: Mapping[str, str], asked: Mapping[str, str]
 ) -> dict[str, Any]:
     """Run the first point with the changed inputs: once measured, once recorded."""
     changed = {name: text for name, text in asked.items() if name in first and text.strip() != first[name]}

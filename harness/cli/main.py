@@ -9,7 +9,7 @@ from importlib import import_module
 
 from harness.cli.interruption import exit_code, heeding_signals
 from harness.cli.streams import reliable_streams
-from harness.cli.width import HelpFormatter
+from harness.cli.width import HelpFormatter, one_line
 from harness.errors import InputError
 from harness.process_limits import has_room_for_libraries, out_of_memory
 
@@ -33,8 +33,6 @@ COMMANDS = {
 
 _LIGHT = frozenset({"validate", "list", "new"})
 """Commands that do without scipy, whose linear algebra waits for memory for ever."""
-
-_CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -81,7 +79,7 @@ def _run(words: Sequence[str]) -> int:
         return int(module.run(command.parse_args(words[1:])))
     except InputError as error:
         for problem in error.problems:
-            print(_one_line(str(problem)), file=sys.stderr)
+            print(one_line(str(problem)), file=sys.stderr)
         return 2
     except KeyboardInterrupt as interruption:
         print("interrupted", file=sys.stderr)
@@ -91,11 +89,6 @@ def _run(words: Sequence[str]) -> int:
             raise
         print("memory ran out: this process may take less than the command needs (`ulimit -v`)", file=sys.stderr)
         return 1
-
-
-def _one_line(text: str) -> str:
-    """Without the letters, as file names may hold, that would end the line or do something to a terminal."""
-    return "".join(letter if letter >= " " and letter not in _CONTROLS else repr(letter)[1:-1] for letter in text)
 
 
 def _parser() -> argparse.ArgumentParser:

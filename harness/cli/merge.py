@@ -20,9 +20,9 @@ def run(arguments: argparse.Namespace) -> int:
     from harness.store.merging import merge
 
     merged = merge(arguments.into, arguments.others)
-    (sweeps, all_sweeps), (runs, all_runs) = merged.sweeps, merged.runs
+    (sweeps, all_sweeps), (runs, all_runs), (_, all_machines) = merged.sweeps, merged.runs, merged.machines
     print(
         f"{arguments.into}: {all_sweeps - sweeps} sweeps and {all_runs - runs} runs added; "
-        f"now {all_sweeps} sweeps and {all_runs} runs of {merged.machines[1]} machines"
+        f"now {all_sweeps} sweeps and {all_runs} runs of {all_machines} machines"
     )
     return 0

@@ -15,7 +15,7 @@ from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
-from harness.cli.width import say
+from harness.cli.width import one_line, say
 from harness.errors import InputError, Problem
 from harness.vocabulary import MESH_FORMATS
 
@@ -123,7 +123,7 @@ def _inspect(arguments: argparse.Namespace) -> None:
     facts = [{"file": str(path), **_facts(mesh)} for path, mesh in opened.items() if not isinstance(mesh, str)]
     if arguments.json:
         print(json.dumps({"meshes": facts}, indent=2))
-    else:
+    elif facts:
         print("\n\n".join(map(_paragraph, facts)))
     problems = [Problem(mesh) for mesh in opened.values() if isinstance(mesh, str)]
     if problems:
@@ -202,7 +202,7 @@ def _facts(mesh: Mesh) -> dict[str, Any]:
 
 def _paragraph(facts: dict[str, Any]) -> str:
     """Facts for people: one a line."""
-    lines = [facts["file"]]
+    lines = [one_line(facts["file"])]
     for key, name in FACTS:
         lines.append(f"  {name:22}{_shown(facts[key])}")
     return "\n".join([*lines, *(f"  note: {note}" for note in facts["notes"])])

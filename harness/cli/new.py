@@ -6,11 +6,10 @@ import argparse
 from typing import TYPE_CHECKING
 
 from harness.cli.width import say
+from harness.experiment import FOLDER
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-FOLDER = "experiments"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 
+from harness import DATABASE
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Say which results, and where the pages go."""
-    parser.add_argument("--db", metavar="FILE", default="results/results.db", help="the results (default: %(default)s)")
+    parser.add_argument("--db", metavar="FILE", default=DATABASE, help="the results (default: %(default)s)")
     parser.add_argument(
         "--out", metavar="DIR", default="results/report", help="folder to write the pages into (default: %(default)s)"
     )

@@ -16,13 +16,11 @@ from typing import Any
 from harness.backends.registry import names as declared
 from harness.backends.registry import packages
 from harness.backends.statement import missing
-from harness.cli.crosscheck import Meshes
 from harness.compare.atlas import JUDGE, Atlas, Cell, Survey, survey
 from harness.compare.budget import Budget, LeftOut, in_sentences
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.gap_atlas import SURVEYS
 from harness.compare.outcome import Comparison
-from harness.compare.own_gaps import OWN
 from harness.compare.script import script_of
 from harness.experiment.experiment import Experiment
 from harness.measure.machine import package_versions
@@ -31,7 +29,8 @@ from harness.runner.scene_of_point import build_scene
 from harness.runner.servers import files_of
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from harness.vocabulary import EXACT_FRAMES, Family, Shape
+from harness.scene.scene_files import Opened
+from harness.vocabulary import EXACT_FRAMES, OWN, Family, Shape
 from harness.workers import shared_out
 
 # s for the atlas of an experiment within a sweep; `harness compare` takes as long as it takes.
@@ -113,7 +112,7 @@ class _Part:
 
 def surveyed(
     experiment: Experiment,
-    meshes: Meshes,
+    meshes: Opened,
     names: Sequence[str],
     budget: Budget,
     progress: Callable[[str], None] = lambda line: None,
@@ -140,14 +139,15 @@ def surveyed(
         for query in measure.family_queries:
             asked = names if query == "collision" else (*names, OWN)
             kinds = [(mesh, family) for mesh in files.meshes or (None,) for family in measure.families]
-            kinds = [kind for kind in kinds if kind[1] != RESTING]
+            kinds = [(mesh, family) for mesh, family in kinds if family != RESTING]
             for mesh, family in kinds if recorded is None else [*kinds, (only, RESTING)]:
                 of = f" of {mesh.name}" if mesh is not None and shape != "sphere" else ""
                 how = (measure.family_poses, asked, budget, SURVEYS[query], recorded, file_of)
                 tasks.append((f"{query}, {family}, {shape}{of}", partial(_part, shape, mesh, family, *how)))
 
     def begin(place: int) -> None:
-        progress(f"{tasks[place][0]}: {measure.family_poses} poses")
+        said, _ = tasks[place]
+        progress(f"{said}: {measure.family_poses} poses")
 
     left = list(budget.left)
     parts = dict(_done([task for _, task in tasks], workers, begin))
@@ -201,7 +201,7 @@ def _part(
     return _Part(atlas, rows, budget.left[before:])
 
 
-def survey_key(experiment: Experiment, meshes: Meshes, name: str) -> str:
+def survey_key(experiment: Experiment, meshes: Opened, name: str) -> str:
     """Of two surveys of an engine with the same key the second would find nothing new."""
     points = sorted({point_key(point, files_of(experiment, point, meshes)) for point in experiment.points})
     measure = experiment.measure

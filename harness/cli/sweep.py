@@ -9,22 +9,23 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from harness import DATABASE
+from harness.cli.arguments import count
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 from harness.errors import InputError, Problem
+from harness.experiment import FOLDER
 
 if TYPE_CHECKING:
     from harness.experiment.experiment import Experiment
     from harness.runner.executor import Executor
     from harness.runner.schedule import RunSelection
-    from harness.runner.sweep import Summary
+    from harness.runner.sweep import SweepSummary
     from harness.scene.scene_files import Opened
-
-DATABASE = "results/results.db"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("paths", metavar="PATH", nargs="*", default=["experiments"], help="files or folders")
+    parser.add_argument("paths", metavar="PATH", nargs="*", default=[FOLDER], help="files or folders")
     parser.add_argument("--db", metavar="FILE", default=DATABASE, help="the database (default: %(default)s)")
     parser.add_argument("--long", action="store_true", help="also experiments of `tier: long`")
     add_override_argument(parser)
@@ -45,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     which.add_argument("--dry-run", action="store_true", help="say what would be done and how long it may take")
     where = parser.add_argument_group("where").add_mutually_exclusive_group()
     where.add_argument(
-        "--jobs", type=_positive, metavar="N", help="N runs at a time on this machine; their times do not count"
+        "--jobs", type=count, metavar="N", help="N runs at a time on this machine; their times do not count"
     )
     where.add_argument(
         "--cluster",
@@ -139,16 +140,6 @@ def _executor(arguments: argparse.Namespace) -> Executor | None:
     return Cluster(address)
 
 
-def _positive(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
-
-
-_positive.__name__ = "number"  # argparse names it: "invalid number value"
-
-
 def _address(text: str) -> str:
     kind, _, rest = text.partition(":")
     if kind == "local":
@@ -198,7 +189,7 @@ def _print_what_would_be_done(
     say(f"{len(jobs)} runs to do, {kept.total()} kept from before: {time}")
 
 
-def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
+def _print_outcome(summary: SweepSummary, arguments: argparse.Namespace) -> None:
     """The outcome, on standard output."""
     import shlex
 
@@ -207,11 +198,11 @@ def _print_outcome(summary: Summary, arguments: argparse.Namespace) -> None:
     if not arguments.quiet and summary.experiments:
         rows = []
         for name, statuses in summary.experiments.items():
-            failed = ", ".join(f"{count} {status}" for status, count in sorted(statuses.items()) if status != "ok")
+            failed = ", ".join(f"{number} {status}" for status, number in sorted(statuses.items()) if status != "ok")
             rows.append([name, str(statuses.total()), failed or "none", duration_text(summary.seconds[name])])
         _print_table(["experiment", "runs", "failed", "time"], rows)
-    counts = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
-    by_status = f" ({counts})" if counts else ""
+    listed = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
+    by_status = f" ({listed})" if listed else ""
     say(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
     if summary.controls:
         say(f"{summary.controls} of them done twice, as a control of the noise")

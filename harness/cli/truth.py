@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from harness.cli.arguments import count, names, seconds
 from harness.cli.width import HelpFormatter
 
 DEFAULT_BUDGET = 7200.0
@@ -48,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=float,
         default=DEFAULT_BUDGET,
-        help="draw no more after so long; the README says how many were made (default: 7200)",
+        help=f"draw no more after so long; the README says how many were made (default: {DEFAULT_BUDGET:g})",
     )
     check = actions.add_parser("check", help="prove every case anew", description="Prove every case anew.")
     check.add_argument("folder", metavar="DIR", help="a folder that `make` wrote")
@@ -59,9 +60,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         formatter_class=HelpFormatter,
     )
     ask.add_argument("folder", metavar="DIR", help="a folder that `make` wrote")
-    ask.add_argument("--backends", metavar="NAMES", type=_words, default=["own"], help="such as own,fcl (default: own)")
-    ask.add_argument("--families", metavar="NAMES", type=_words, default=[], help="ask about these alone")
-    ask.add_argument("--every", metavar="N", type=_count, default=1, help="ask about every N-th case of each family")
+    ask.add_argument("--backends", metavar="NAMES", type=names, default=["own"], help="such as own,fcl (default: own)")
+    ask.add_argument("--families", metavar="NAMES", type=names, default=[], help="ask about these alone")
+    ask.add_argument("--every", metavar="N", type=count, default=1, help="ask about every N-th case of each family")
     ask.add_argument(
         "--dt",
         metavar="SECONDS",
@@ -72,14 +73,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ask.add_argument(
         "--within",
         metavar="SECONDS",
-        type=_seconds,
+        type=seconds,
         default="1e-9",
         help="by which a time may be out of its bounds (default: 1e-9)",
     )
     ask.add_argument(
         "--timeout",
         metavar="SECONDS",
-        type=_seconds,
+        type=seconds,
         default="60",
         help="that a case may take; its process is then ended (default: 60)",
     )
@@ -182,35 +183,8 @@ def _keep(found: dict[str, dict[str, Any]], folder: str, database: str) -> None:
             kept.add_comparison(command, name, (label, "proven times"), f"{name} {label}", told)
 
 
-def _words(text: str) -> list[str]:
-    return [word.strip() for word in text.split(",") if word.strip()]
-
-
-def _count(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError("it must be 1 or more")
-    return number
-
-
-def _seconds(text: str) -> float:
-    seconds = _number(text)
-    if not 0.0 < seconds < float("inf"):
-        raise argparse.ArgumentTypeError(f"a time must be above 0 and finite, not {text}")
-    return seconds
-
-
-def _number(text: str) -> float:
-    """A number, or a fraction such as 1/60."""
-    above, slash, below = text.partition("/")
-    try:
-        return float(above) / float(below) if slash else float(text)
-    except (ValueError, ZeroDivisionError):
-        raise argparse.ArgumentTypeError(f"no number: {text!r}") from None
-
-
 def _steps(text: str) -> list[float]:
-    return [_seconds(word) for word in _words(text)]
+    return [seconds(word) for word in names(text)]
 
 
 def _progress(line: str) -> None:

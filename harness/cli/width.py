@@ -11,6 +11,7 @@ import textwrap
 from collections.abc import Iterable, Iterator
 
 _LEAST = 24  # columns that a last column of a table needs to be one
+_CONTROLS = frozenset(map(chr, range(0x7F, 0xA0)))
 _HANGING = 4  # columns by which the rest of a line is indented, where it cannot stand below the last column
 
 
@@ -37,6 +38,11 @@ def say(text: str) -> None:
     """
     width = columns()
     print(text if width is None else fitted(text, width))
+
+
+def one_line(text: str) -> str:
+    """Without the letters, as file names may hold, that would end the line or do something to a terminal."""
+    return "".join(letter if letter >= " " and letter not in _CONTROLS else repr(letter)[1:-1] for letter in text)
 
 
 def fitted(text: str, width: int) -> str:

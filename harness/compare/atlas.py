@@ -19,7 +19,7 @@ from harness.compare.comparison import MOST_FAILURES
 from harness.compare.families import family_poses, resting_poses
 from harness.compare.isolated import ANSWER_SECONDS, Isolated, UnusableError, preload
 from harness.compare.outcome import Case, Failure
-from harness.compare.own_gaps import OWN, compile_own_gaps
+from harness.compare.own_gaps import compile_own_gaps
 from harness.compare.pair_audit import band
 from harness.compare.poses import Pose, PoseSet
 from harness.compare.query_answers import make_ready
@@ -27,7 +27,7 @@ from harness.compare.tally import NamePair
 from harness.compare.truths import Truths
 from harness.scene.mesh import Mesh
 from harness.scene.scene import Scene
-from harness.vocabulary import MethodName, Query, Shape
+from harness.vocabulary import OWN, MethodName, Query, Shape
 
 JUDGE = "exact arithmetic"
 """The name under which the judge stands beside an engine."""

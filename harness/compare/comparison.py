@@ -131,7 +131,7 @@ def _compare_at(
         for pair, found in whole.items():
             for name in [name for name in pair if name in loaded.unusable and pair not in compared][:1]:
                 asked = "" if question.query == "collision" else f" asked {question.query}"
-                line = f"{pair[0]} and {pair[1]} are not comparable on shape {shape}{asked}"
+                line = f"{' and '.join(pair)} are not comparable on shape {shape}{asked}"
                 found.unsupported.append(f"{line}: {name}: {loaded.unusable[name]}")
         for name in sorted(loaded.broken):
             pair = next(pair for pair in whole if name in pair)
@@ -176,10 +176,10 @@ class _Questions:
         self._poses = tuple(pose_set.poses(group.scene))
         facts = {name: asked.facts for name, asked in group.asked.items()}
         self._audits = {
-            pair: audit_of(
-                pair, group.scene, (facts[pair[0]], facts[pair[1]]), pose_set.question, flown=not pose_set.hard
+            (one, other): audit_of(
+                (one, other), group.scene, (facts[one], facts[other]), pose_set.question, flown=not pose_set.hard
             )
-            for pair in group.pairs
+            for one, other in group.pairs
         }
         # in their order, those that some pair needs
         self.names = [name for name in group.asked if any(name in pair for pair in group.pairs)]

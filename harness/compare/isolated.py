@@ -26,7 +26,7 @@ from harness.backends.protocol import (
     queries,
 )
 from harness.child_process import Channel, Child, guarded
-from harness.compare.own_gaps import OWN, OwnGaps
+from harness.compare.own_gaps import OwnGaps
 from harness.compare.poses import Frame, Pose
 from harness.compare.query_answers import PairAnswers, QueryAnswers
 from harness.compare.question import COLLISION, Question
@@ -36,7 +36,7 @@ from harness.process_limits import limit_memory_of_plugin
 from harness.scene.hull import Hull, hull_of
 from harness.scene.ignored_pairs import without
 from harness.scene.scene import Scene, Solid
-from harness.vocabulary import MethodName, PipelineName, Query, Shape
+from harness.vocabulary import OWN, MethodName, PipelineName, Query, Shape
 
 Pair = tuple[int, int]
 

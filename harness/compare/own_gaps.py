@@ -12,10 +12,7 @@ from harness.methods.warm_up_scene import two_bodies
 from harness.narrowphase.gap import EXACT, MeshGapShape, mesh_gap_shape
 from harness.narrowphase.pose_gaps import Gaps, Poses, hull_gaps, mesh_gaps, sphere_gaps
 from harness.scene.scene import Scene
-from harness.vocabulary import Query, Shape
-
-OWN = "own"
-"""The name under which they are asked."""
+from harness.vocabulary import OWN, Query, Shape
 
 
 class OwnGaps:

@@ -283,10 +283,10 @@ def _written_of_impact(case: Case, call: Call) -> str | None:
 def _filled(scene: Scene, case: Case, call: Call, motion: str = "", placed: str = _STILL, **texts: str) -> str:
     """The file, given what is asked and proved, and how the bodies move where they do."""
     pose, unit = case.pose, call.unit(scene.bodies.sizes)
-    parts = [_solid(scene.solid_of_body(body), unit) for body in case.bodies]
-    places = [(pose.positions[body] / unit).tolist() for body in case.bodies]
-    turns = [pose.quaternions[body].tolist() for body in case.bodies]
-    packed = any(part.startswith("unpacked") for both in parts for part in both)
+    (first, faces), (second, other_faces) = (_solid(scene.solid_of_body(body), unit) for body in case.bodies)
+    position, other_position = ((pose.positions[body] / unit).tolist() for body in case.bodies)
+    quaternion, other_quaternion = (pose.quaternions[body].tolist() for body in case.bodies)
+    packed = any(part.startswith("unpacked") for part in (first, faces, second, other_faces))
     return _TEXT.format(
         packing=_PACKING if packed else "",
         unpack=_UNPACK if packed else "",
@@ -296,14 +296,14 @@ def _filled(scene: Scene, case: Case, call: Call, motion: str = "", placed: str 
         ask="\n".join(f"    {line}" if line else "" for line in call.ask.strip().splitlines()) + "\n",
         pose=pose.name,
         unit=unit,
-        first=parts[0][0],
-        faces=parts[0][1],
-        second=parts[1][0],
-        other_faces=parts[1][1],
-        position=places[0],
-        quaternion=turns[0],
-        other_position=places[1],
-        other_quaternion=turns[1],
+        first=first,
+        faces=faces,
+        second=second,
+        other_faces=other_faces,
+        position=position,
+        quaternion=quaternion,
+        other_position=other_position,
+        other_quaternion=other_quaternion,
         motion=motion,
         placed=placed,
         **texts,

@@ -58,7 +58,8 @@ def locate_mesh(reference: str, beside: Path) -> Path:
         where = f"the package {package}" if package else "the experiment's folder and the folders of meshes"
         raise InputError(f"the mesh {shown(reference)} lies outside of {where}")
     prefix = f"{PACKAGE}{package}/" if package else ""
-    hint = near(reference, (prefix + name for root in roots for name in _meshes_in(root)))
+    there = next(filter(None, (_no_file(root, relative) for root in roots)), None)
+    hint = f": it is {there}" if there else near(reference, (prefix + n for root in roots for n in _meshes_in(root)))
     where = f"in the package {package}" if package else "beside the experiment or in meshes/"
     raise InputError(f"there is no mesh {shown(reference)} {where}{hint}")
 
@@ -85,6 +86,21 @@ def _file(root: Path, relative: str) -> Path | None:
         path = root / relative
         return path.resolve() if path.is_file() else None
     except (OSError, ValueError, RuntimeError):  # a name too long, with a zero in it, or links that go round in circles
+        return None
+
+
+def _no_file(root: Path, relative: str) -> str | None:
+    """What stands there that is no file, if anything does; nothing is said of what lies outside."""
+    try:
+        path = root / relative
+        if not path.parent.resolve().is_relative_to(root.resolve()):
+            return None
+        if path.is_dir():
+            return "a folder"
+        if path.exists():
+            return "a pipe or a device"
+        return "a link that leads to no file" if path.is_symlink() else None
+    except (OSError, ValueError, RuntimeError):  # as in `_file`
         return None
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
-Outcome = Literal["holds", "fails", "undecided"]
+VerdictWord = Literal["holds", "fails", "undecided"]
 
 _SAME = 1e-9  # relative: `equals` allows for rounding
 
@@ -66,7 +66,7 @@ class Limits:
         """How far a value lies beyond the nearer limit; negative inside, inf for no value."""
         return math.inf if value is None else max(self.low - value, value - self.high)
 
-    def judge(self, low: float, high: float, rounding: float = 0.0) -> Outcome:
+    def judge(self, low: float, high: float, rounding: float = 0.0) -> VerdictWord:
         """Whether an interval lies inside, outside, or straddles a limit by more than rounding."""
         if low >= self.low - rounding and high <= self.high + rounding:
             return "holds"

@@ -190,7 +190,8 @@ def sign_test(logs: NDArray[np.float64], known: Control) -> float:
 def _chance(n: int, place: int, controls: int, beyond: int) -> float:
     """How often, of n equal pairs, all but `place` lie on one side, farther out than `beyond` pairs of a control.
 
-    The order of the distances of equal pairs and control is any, with the same probability; their signs are coins.
+    The distances of equal pairs and control come in any order, with the same probability; either sign of each is as
+    likely.
     """
     from scipy import special
 

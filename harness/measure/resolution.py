@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from harness.measure.noise import FALSE_RATE, Control, distinguishable, p_value
 from harness.measure.statistics import FEWEST_FOR_INTERVAL, summary
 
-Outcome = Literal["apart", "same", "few", "uncontrolled"]
+Distinction = Literal["apart", "same", "few", "uncontrolled"]
 """Told apart; not to be told apart; too few repeats to say; no control to say it by."""
 
 
@@ -35,7 +35,7 @@ class Resolution:
         """The noise floor; None where it is not known."""
         return 0.0 if self.exact else None if self.control is None else self.control.floor
 
-    def tell(self, ratios: ArrayLike) -> Outcome:
+    def tell(self, ratios: ArrayLike) -> Distinction:
         """What the ratios of paired repeats say.
 
         >>> noise = Control((0.01, 0.01, 0.02, 0.02, 0.03))

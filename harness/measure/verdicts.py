@@ -15,7 +15,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from harness.measure.limits import Criterion, Limits, Outcome, declared, leaves_text, limits
+from harness.measure.limits import Criterion, Limits, VerdictWord, declared, leaves_text, limits
 from harness.measure.metrics import METRICS
 from harness.measure.noise import Control
 from harness.measure.number_text import interval_text, number_text
@@ -45,7 +45,7 @@ class GroupVerdict:
     """
 
     parameters: dict[str, Any]
-    verdict: Outcome
+    verdict: VerdictWord
     statement: str
     value: float | None
     low: float | None
@@ -57,7 +57,7 @@ class GroupVerdict:
 class Verdict:
     """A verdict with its sentence for people and the groups it stands on."""
 
-    verdict: Outcome
+    verdict: VerdictWord
     statement: str
     groups: tuple[GroupVerdict, ...] = ()
 
@@ -147,7 +147,7 @@ def _combined(basis: _Basis, groups: Sequence[GroupVerdict], used: pd.DataFrame,
     if not groups:
         return Verdict("undecided", f"nothing to compare {basis.metric} with{_for(basis.criterion.ratio_to or {})}")
     outcomes = [group.verdict for group in groups]
-    outcome: Outcome = "fails" if "fails" in outcomes else "undecided" if "undecided" in outcomes else "holds"
+    outcome: VerdictWord = "fails" if "fails" in outcomes else "undecided" if "undecided" in outcomes else "holds"
     alike = [group for group in groups if group.verdict == outcome]
     worst = max(alike, key=lambda group: basis.limits.excess(group.value))
     elsewhere = {leaf: value for leaf, value in basis.criterion.where.items() if leaf not in worst.parameters}
@@ -286,7 +286,7 @@ def _ratio(
     return _group(where, outcome, f"{subject} is {interval_text(found)} times that{_for(base)}{remark}", found)
 
 
-def _judged_ratio(basis: _Basis, found: Summary) -> tuple[Outcome, str]:
+def _judged_ratio(basis: _Basis, found: Summary) -> tuple[VerdictWord, str]:
     """As `_judged`; of a clock, only with repeats and a control enough, and beyond its noise floor."""
     if not basis.noisy or found.n == 0:
         return _judged(basis, found)
@@ -303,7 +303,7 @@ def _judged_ratio(basis: _Basis, found: Summary) -> tuple[Outcome, str]:
     return outcome, remark if outcome != plain_outcome else plain_remark
 
 
-def _judged(basis: _Basis, found: Summary) -> tuple[Outcome, str]:
+def _judged(basis: _Basis, found: Summary) -> tuple[VerdictWord, str]:
     if found.n == 0:
         return "undecided", ", as no run tells"
     if basis.noisy and found.n == 1:
@@ -312,11 +312,11 @@ def _judged(basis: _Basis, found: Summary) -> tuple[Outcome, str]:
     return outcome, _remark(outcome)
 
 
-def _remark(outcome: Outcome) -> str:
+def _remark(outcome: VerdictWord) -> str:
     return ", which straddles a limit" if outcome == "undecided" else ""
 
 
-def _group(where: dict[str, Any], outcome: Outcome, statement: str, found: Summary) -> GroupVerdict:
+def _group(where: dict[str, Any], outcome: VerdictWord, statement: str, found: Summary) -> GroupVerdict:
     return GroupVerdict(where, outcome, statement, plain(found.median), plain(found.low), plain(found.high), found.n)
 
 

@@ -132,6 +132,12 @@ class QueryPipeline(ABC):
         course = passing_course(scene, end) if plan.keeps("recording") else None
         return Outcome(metrics, trace, course, answers)
 
+    def _walls_alone(self, flight: _Flight, time: float) -> None:
+        """End a frame of bodies none of which can get near another."""
+        flight.clock.lap("pair_seconds")
+        if flight.observed:
+            flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+
     def _log(self, traced: bool) -> NearLog | None:
         return None
 
@@ -166,9 +172,7 @@ class NearPipeline(QueryPipeline):
         flight.clock.start()
         trajectory.move_to(time)
         if finder is None:
-            flight.clock.lap("pair_seconds")
-            if flight.observed:
-                flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            self._walls_alone(flight, time)
             return
         found = finder.near(trajectory.positions, trajectory.quaternions)
         flight.clock.lap("pair_seconds")
@@ -222,9 +226,7 @@ class ImpactPipeline(QueryPipeline):
         flight.clock.start()
         trajectory.move_to(start)
         if finder is None:
-            flight.clock.lap("pair_seconds")
-            if flight.observed:
-                flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            self._walls_alone(flight, time)
             return
         self._middle.move_to(start + 0.5 * dt)
         motion = FrameMotion(

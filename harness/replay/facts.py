@@ -9,23 +9,9 @@ from typing import Any
 from harness.replay.document import Fact
 
 _LEAVES = (
-    *(
-        "backend",
-        "algorithm",
-        "query",
-        "within",
-        "shape",
-        "mesh",
-        "count",
-        "size",
-        "speed",
-        "spin",
-        "packing",
-        "box_ratio",
-        "box",
-    ),
-    *("response", "restitution", "overlap", "duration", "dt", "seed"),
-)
+    "backend", "algorithm", "query", "within", "shape", "mesh", "count", "size", "speed", "spin", "packing",
+    "box_ratio", "box", "response", "restitution", "overlap", "duration", "dt", "seed",
+)  # fmt: skip
 _COUNTERS = ("pair_hits", "box_hits", "pair_tests", "narrow_tests", "box_tests", "predictions")
 _THIN = "\u202f"
 

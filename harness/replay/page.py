@@ -19,9 +19,9 @@ from harness.store.recording import Recording
 
 # Each imports only from those before it; `main` starts the page.
 MODULES = (
-    *("matrix", "recording", "surface", "shaders", "camera", "stage", "clock", "timeline", "hitlist", "replay"),
-    *("live", "main"),
-)
+    "matrix", "recording", "surface", "shaders", "camera", "stage", "clock", "timeline", "hitlist", "replay", "live",
+    "main",
+)  # fmt: skip
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const)\b)", re.MULTILINE)
 

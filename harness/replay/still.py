@@ -25,6 +25,8 @@ _MOST_TRIANGLES = 24_000
 _TURN, _TILT, _FIELD = 0.62, 0.42, 0.62  # as the viewer's first view, rad
 _BODY, _EDGE = np.array([224.0, 148.0, 26.0]), (141, 147, 161, 255)
 _COLOURS = 96
+# Of a box, as the viewer numbers them: corner a and corner a | bit have an edge between them.
+_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 
 
 def still(recording: Recording) -> bytes:
@@ -59,7 +61,7 @@ def _camera(half: Floats) -> tuple[Floats, Floats]:
     right /= np.linalg.norm(right)
     axes = np.array([right, np.cross(back, right), back])
     distance = 0.93 * float(np.linalg.norm(half)) / np.sin(_FIELD / 2)
-    corners = (np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half) @ axes.T
+    corners = (_CORNERS * half) @ axes.T
     aside = corners[:, :2] / (distance - corners[:, 2:]) * distance
     middle = (aside.min(axis=0) + aside.max(axis=0)) / 2  # of the picture of the box, which perspective puts off centre
     return back * distance + middle @ axes[:2], axes
@@ -75,7 +77,7 @@ def _projected(points: Floats, eye: Floats, axes: Floats) -> tuple[Floats, Float
 
 
 def _draw_box(draw: ImageDraw.ImageDraw, half: Floats, eye: Floats, axes: Floats) -> None:
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
+    corners = _CORNERS * half
     flat, _ = _projected(corners, eye, axes)
     for a in range(8):
         for bit in (1, 2, 4):

@@ -127,9 +127,8 @@ def _controls(runs: pd.DataFrame, controls: Sequence[ControlRecord]) -> dict[str
     clocks = sorted({metric for record in controls for metric in record.metrics if metric in runs.columns})
     good = runs[runs["status"] == "ok"]
     places = zip(good["point"], good["repeat"], good["machine"], strict=True)
-    measured = (
-        good[clocks].to_numpy().tolist()
-    )  # not `itertuples`, which in pandas 2 has no rows where there is no column
+    # not `itertuples`, which in pandas 2 has no rows where there is no column
+    measured = good[clocks].to_numpy().tolist()
     first = {place: dict(zip(clocks, values, strict=True)) for place, values in zip(places, measured, strict=True)}
     return controls_of(first, [((record.point, record.repeat, record.machine), record.metrics) for record in controls])
 

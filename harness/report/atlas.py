@@ -98,7 +98,8 @@ class AtlasResults:
 
 def case_stem(record: ComparisonRecord, place: int) -> str:
     """Where the files of a case lie, without suffix."""
-    return f"cases/{record.experiment}-{record.backends[0]}-{place}".replace("/", "-").replace("cases-", "cases/", 1)
+    name = f"{record.experiment}-{record.backends[0]}-{place}".replace("/", "-")
+    return f"cases/{name}"
 
 
 def _together(parts: Sequence[AtlasPart]) -> dict[tuple[str, str], Mapping[str, Any]]:

@@ -19,7 +19,7 @@ from harness.report.family import Family
 from harness.report.figure import Figure, figures_of
 from harness.report.findings import Findings, findings
 from harness.report.machine import machine_text
-from harness.report.published import Row, published_rows
+from harness.report.published import PublishedRow, published_rows
 from harness.report.quantity import leaf_text, plural
 from harness.report.ranking import Growth, growth
 from harness.report.replay import Replay, replay_of
@@ -103,7 +103,7 @@ class ExperimentPage:
         return figures_of("experiment", self)
 
     @cached_property
-    def published(self) -> list[Row]:
+    def published(self) -> list[PublishedRow]:
         """Published rows beside ours."""
         return published_rows(self.record.name, self.record.specification.get("published") or {}, self.arrangement)
 

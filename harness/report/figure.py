@@ -6,6 +6,7 @@ words what it shows, for those who cannot see it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -92,6 +93,15 @@ class FigureSource:
     made: Callable[[Any], Iterable[Figure]]
     section: str = "figures"
     place: float = 50.0
+
+
+def name_of(*parts: str) -> str:
+    """These as the name of a figure, without what neither an id nor the name of a file may have; empty ones left out.
+
+    >>> name_of("atlas", "", "hull of cow.obj")
+    'atlas-hull-of-cow-obj'
+    """
+    return re.sub(r"[^\w-]+", "-", "-".join(filter(None, parts)))
 
 
 def figures_of(page: str, subject: object) -> dict[str, list[Figure]]:

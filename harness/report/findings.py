@@ -21,7 +21,7 @@ from harness.report.sentences.growth import change_sentences, exponent_sentences
 from harness.report.sentences.leaders import leader_sentences
 from harness.report.sentences.warnings import warning_sentences
 from harness.report.series import Arrangement
-from harness.report.words import is_noisy, metric_title, metric_unit
+from harness.report.words import is_noisy, metric_title, metric_unit, verdicts_text
 from harness.store.records import ExperimentRecord, VerdictRow
 
 
@@ -75,16 +75,10 @@ def findings(
 def _outcomes(verdicts: Sequence[VerdictRow], noun: str) -> list[Markup]:
     if not verdicts:
         return []
-    counts = Counter(row.verdict for row in verdicts)
-    listed = ", ".join(
-        f"{number(counts[word])} {word if counts[word] == 1 else more}" for word, more in _WORDS if counts[word]
-    )
+    listed = verdicts_text(row.verdict for row in verdicts)
     held = Markup("{}: <strong>{}</strong>.").format(f"{noun}s".capitalize(), listed)
     false = [Markup("False: {}").format(_ended(row.statement)) for row in verdicts if row.verdict == "fails"]
     return [held, *false]
-
-
-_WORDS = (("holds", "hold"), ("fails", "fail"), ("undecided", "undecided"))
 
 
 def _single(arrangement: Arrangement) -> list[Markup]:

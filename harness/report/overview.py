@@ -18,6 +18,7 @@ from harness.report.quantity import plural
 from harness.report.results import Results
 from harness.report.stability.case import is_case
 from harness.report.weight import weight
+from harness.report.words import VERDICTS, verdict_text
 from harness.store.records import VerdictRow
 
 _MOST_FINDINGS = 5
@@ -43,11 +44,10 @@ class Card:
         found: list[tuple[str, str]] = [(noise, noise.replace(" ", "-"))] if noise else []
         if self.page.failed:
             found.append((f"{self.page.failed} failed", "failed"))
-        for verdict in ("holds", "fails", "undecided"):
+        for verdict in VERDICTS:
             count = sum(row.verdict == verdict for row in self.page.record.claims if is_judged(row))
             if count:
-                word = {"holds": "hold", "fails": "fail"}.get(verdict, verdict) if count > 1 else verdict
-                found.append((f"{plural(count, 'claim')} {word}", verdict))
+                found.append((f"{plural(count, 'claim')} {verdict_text(verdict, count)}", verdict))
         if self.page.findings.warnings:
             found.append((plural(len(self.page.findings.warnings), "warning"), "noisy"))
         return found

@@ -27,7 +27,7 @@ _ALIKE = 3  # equal numbers that make a row a repetition of another
 
 
 @dataclass(frozen=True)
-class Row:
+class PublishedRow:
     """One published row: where it stands, its leaf values, its numbers, and our point with the series it belongs to."""
 
     experiment: str
@@ -55,7 +55,7 @@ class Row:
 class Recovered:
     """What a row's two test counts say about its run: bodies and frames, with what is printed (None: nothing)."""
 
-    row: Row
+    row: PublishedRow
     bodies: float
     printed: float | None
     frames: float
@@ -81,13 +81,13 @@ class Recovered:
 class Repetition:
     """Two published rows with the same numbers, which were measured apart: `same` and `differing` name metrics."""
 
-    first: Row
-    second: Row
+    first: PublishedRow
+    second: PublishedRow
     same: tuple[str, ...]
     differing: tuple[str, ...]
 
 
-def published_rows(name: str, published: Mapping[str, Any], arrangement: Arrangement) -> list[Row]:
+def published_rows(name: str, published: Mapping[str, Any], arrangement: Arrangement) -> list[PublishedRow]:
     """The rows of a `published:` block, each with our points at its leaf values: of several series, or none."""
     rows = []
     for given in published.get("rows") or ():
@@ -99,23 +99,23 @@ def published_rows(name: str, published: Mapping[str, Any], arrangement: Arrange
             for point in series.points
             if all(_same(point.parameters.get(leaf), value) for leaf, value in leaves.items())
         ]
-        rows += [Row(name, leaves, numbers, point, series.label, series.style) for series, point in ours] or [
-            Row(name, leaves, numbers, None, "", 0)
+        rows += [PublishedRow(name, leaves, numbers, point, series.label, series.style) for series, point in ours] or [
+            PublishedRow(name, leaves, numbers, None, "", 0)
         ]
     return rows
 
 
-def metrics_of(rows: Sequence[Row]) -> list[str]:
+def metrics_of(rows: Sequence[PublishedRow]) -> list[str]:
     """The metrics that the rows print, in the order of their first row."""
     return list(dict.fromkeys(metric for row in rows for metric in row.numbers))
 
 
-def distinct(rows: Sequence[Row]) -> list[Row]:
+def distinct(rows: Sequence[PublishedRow]) -> list[PublishedRow]:
     """The published rows themselves, once each, however many of our series they meet."""
     return list({(row.experiment, row.name, tuple(row.numbers.items())): row for row in reversed(rows)}.values())[::-1]
 
 
-def recovered(rows: Sequence[Row]) -> list[Recovered]:
+def recovered(rows: Sequence[PublishedRow]) -> list[Recovered]:
     """Bodies and frames from the test counts of every row that prints both."""
     found = []
     for row in distinct(rows):
@@ -136,7 +136,7 @@ def recovered(rows: Sequence[Row]) -> list[Recovered]:
     return found
 
 
-def repetitions(rows: Sequence[Row], elsewhere: Sequence[Row] = ()) -> list[Repetition]:
+def repetitions(rows: Sequence[PublishedRow], elsewhere: Sequence[PublishedRow] = ()) -> list[Repetition]:
     """Rows that repeat another row of theirs, or of another experiment, though they print other leaf values.
 
     Parameters
@@ -155,7 +155,7 @@ def repetitions(rows: Sequence[Row], elsewhere: Sequence[Row] = ()) -> list[Repe
     return found
 
 
-def _same_scene(first: Row, second: Row) -> bool:
+def _same_scene(first: PublishedRow, second: PublishedRow) -> bool:
     """Whether both rows are of the same scene, so that equal numbers are as they should be."""
     if first.point is None or second.point is None:
         return False

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from harness.measure.noise import student
-from harness.measure.resolution import Outcome, Resolution
+from harness.measure.resolution import Distinction, Resolution
 from harness.measure.statistics import (
     FEWEST_FOR_INTERVAL,
     Exponent,
@@ -34,7 +34,7 @@ class Ranked:
     Parameters
     ----------
     ratio : how many times worse than the best it is; None of the best, and where nothing can be paired
-    told : whether that ratio is told from 1
+    distinction : whether that ratio is told from 1
     """
 
     series: Series
@@ -42,12 +42,12 @@ class Ranked:
     median: float
     ratio: Summary | None
     best: bool
-    told: Outcome = "same"
+    distinction: Distinction = "same"
 
     @property
     def tied(self) -> bool:
         """Whether it is the best, or cannot be told apart from it."""
-        return self.best or self.told != "apart"
+        return self.best or self.distinction != "apart"
 
 
 @dataclass(frozen=True)
@@ -70,28 +70,30 @@ def rank(series: Sequence[Series], x: object, metric: str, resolution: Resolutio
         point = line.points[0] if x is None else line.at(x)
         if point is not None and math.isfinite(point.median(metric)) and point.can_be_ranked:
             found.append((line, point, point.median(metric)))
-    found = [entry for entry in found if not entry[1].replaces_shape] or found
-    found.sort(key=lambda entry: -entry[2] if more_is_better(metric) else entry[2])
+    found = [(line, point, median) for line, point, median in found if not point.replaces_shape] or found
     if not found:
         return []
-    best = found[0][1]
+    found.sort(key=lambda entry: entry[-1], reverse=more_is_better(metric))
+    _, best, _ = found[0]
     return [
         Ranked(line, point, median, None, True)
         if point is best
-        else Ranked(line, point, median, times_worse(point, best, metric), False, told(point, best, metric, resolution))
+        else Ranked(
+            line, point, median, times_worse(point, best, metric), False, tell_apart(point, best, metric, resolution)
+        )
         for line, point, median in found
     ]
 
 
-def unranked(outcomes: Iterable[Outcome]) -> str:
+def unranked(distinctions: Iterable[Distinction]) -> str:
     """Why nobody is ahead of the others, from what was told of each against the best; "" where somebody may be."""
-    found = set(outcomes)
+    found = set(distinctions)
     if "few" in found:
         return f"too few repeats to rank (fewer than {FEWEST_FOR_INTERVAL} pairs)"
     return "no control to rank by" if "uncontrolled" in found else ""
 
 
-def told(point: MeasuredPoint, best: MeasuredPoint, metric: str, resolution: Resolution) -> Outcome:
+def tell_apart(point: MeasuredPoint, best: MeasuredPoint, metric: str, resolution: Resolution) -> Distinction:
     """Whether two points are told apart in a metric."""
     return resolution.tell(paired(point, best, metric))
 

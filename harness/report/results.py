@@ -86,7 +86,7 @@ class Results:
         return Comparisons(newest([record for record in self._compared if "truth" not in record.document]))
 
     @cached_property
-    def asked(self) -> TruthResults:
+    def truth(self) -> TruthResults:
         """What engines answered to sets of cases with proven times of impact."""
         return TruthResults([record for record in self._compared if "truth" in record.document])
 

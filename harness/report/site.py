@@ -24,7 +24,7 @@ from harness.report.page import pages_of
 from harness.report.results import Results
 from harness.report.section import sections_of
 from harness.report.summary import summary
-from harness.store.history import snapshot
+from harness.store.history import at_one_moment
 from harness.store.records import ExperimentRecord
 from harness.whole_file import write_whole
 
@@ -46,7 +46,7 @@ def write_report(database: str | Path, out: str | Path, formats: Sequence[FileFo
         The results file cannot be read, or the folder cannot be written to.
     """
     out = Path(out)
-    with snapshot(database):
+    with at_one_moment(database):
         contents = list(render(database, formats))  # all of it or, where something is wrong, nothing
     try:
         for name, text in contents:

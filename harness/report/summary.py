@@ -11,6 +11,7 @@ from harness.report.experiment import ExperimentPage
 from harness.report.machine import machine_text
 from harness.report.results import Results
 from harness.report.stability.case import is_case
+from harness.report.words import verdicts_text
 
 
 def summary(results: Results) -> str:
@@ -44,13 +45,7 @@ def _list(title: str, sentences: Sequence[str]) -> list[str]:
 
 
 def _claims(page: ExperimentPage) -> str:
-    verdicts = [row.verdict for row in page.record.claims]
-    words = (("holds", "hold"), ("fails", "fail"), ("undecided", "undecided"))
-    return ", ".join(
-        f"{verdicts.count(verdict)} {verdict if verdicts.count(verdict) == 1 else plural}"
-        for verdict, plural in words
-        if verdict in verdicts
-    )
+    return verdicts_text(row.verdict for row in page.record.claims)
 
 
 def _cell(text: str) -> str:

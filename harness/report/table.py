@@ -115,3 +115,8 @@ def plain(value: Any) -> float | None:
 def counted(value: float) -> Entry:
     """A plain number."""
     return Entry(number(value), sort=plain(value))
+
+
+def counted_bad(value: float) -> Entry:
+    """A count of what should not be: flagged unless it is 0."""
+    return Entry("", flag=number(value), sort=plain(value)) if value else counted(value)

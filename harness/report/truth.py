@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from harness.store.records import ComparisonRecord
-from harness.vocabulary import PipelineName
+from harness.vocabulary import OWN, PipelineName
 
 ALL = "all"
 """The row of all families together."""
@@ -35,7 +35,7 @@ class TruthPart:
     def engines(self) -> list[str]:
         """Who could be asked, the engine of this program first."""
         able = [label for label, found in self.asked.items() if not found["problem"]]
-        return sorted(able, key=lambda label: (label != "own", label))
+        return sorted(able, key=lambda label: (label != OWN, label))
 
     def heading(self, engine: str) -> str:
         """An engine in few letters: of one that is stepped its library and the step."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -33,8 +34,36 @@ _LEAVES = {
 }
 # Leaves whose values explain themselves in a label; others are written "leaf value".
 _SELF_EVIDENT = ("method", "backend", "algorithm", "mesh", "response", "stages")
+VERDICTS = ("holds", "fails", "undecided")
+_OF_SEVERAL = {"holds": "hold", "fails": "fail"}
 # What `scene_text` says of a scene already.
 SCENE_LEAVES = ("count", "mesh", "faces", "hull_vertices", "shape", "box_ratio", "box", "box_side", "packing")
+
+
+def capital(text: str) -> str:
+    """The text with a capital at its beginning, the rest as it is."""
+    return text[:1].upper() + text[1:]
+
+
+def verdict_text(verdict: str, count: int) -> str:
+    """A verdict as it is said of so many rows of `expect` or `claims`.
+
+    >>> verdict_text("holds", 1), verdict_text("holds", 2), verdict_text("undecided", 2)
+    ('holds', 'hold', 'undecided')
+    """
+    return _OF_SEVERAL.get(verdict, verdict) if count != 1 else verdict
+
+
+def verdicts_text(verdicts: Iterable[str]) -> str:
+    """How many rows came to which verdict.
+
+    >>> verdicts_text(["holds", "fails", "holds"])
+    '2 hold, 1 fails'
+    """
+    counts = Counter(verdicts)
+    return ", ".join(
+        f"{number(counts[verdict])} {verdict_text(verdict, counts[verdict])}" for verdict in VERDICTS if counts[verdict]
+    )
 
 
 def metric_title(name: str) -> str:

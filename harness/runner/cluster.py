@@ -141,7 +141,7 @@ class Cluster:
         from distributed import KilledWorker
 
         try:
-            outcome: Outcome = future.result()
+            outcome: WorkerReport = future.result()
         except KilledWorker as error:
             now, report = datetime.now(timezone.utc), Report("crashed", f"every worker that tried it died: {error}")
             return FinishedJob(job, report, timing_grade=False, started=now)
@@ -256,7 +256,7 @@ class Identity:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class WorkerReport:
     """A run on a worker, and where and when it was."""
 
     report: Report
@@ -270,11 +270,11 @@ def identity() -> Identity:
     return Identity(socket.gethostname(), sources_hash(), package_versions(packages()))
 
 
-def run_here(task: Task, *parts: Mesh | RecordedPoses) -> Outcome:
+def run_here(task: Task, *parts: Mesh | RecordedPoses) -> WorkerReport:
     """On a worker: one run in a process of its own, forked from a warm server of this slot."""
     started = datetime.now(timezone.utc)
     servers = _slots.setdefault(threading.get_ident(), Servers())
-    return Outcome(servers.run(task, SceneFiles.of(parts)), socket.gethostname(), _machine(), started)
+    return WorkerReport(servers.run(task, SceneFiles.of(parts)), socket.gethostname(), _machine(), started)
 
 
 def stop_here() -> None:

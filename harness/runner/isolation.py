@@ -104,7 +104,7 @@ def _report(answer: bytes | NoMessage, ending: Ending, printed: str, timeout: fl
             if isinstance(report, Report):
                 return report
     if isinstance(answer, bytes) or (unread and not ending.code):
-        return Report("crashed", "its report was garbage")
+        return Report("crashed", "its report cannot be read")
     if "bad_alloc" in printed or "MemoryError" in printed:
         return Report("memory", "ran out of the memory it may use")
     return Report("memory" if ending.killed else "crashed", ending.instead_of("a result"))

@@ -29,7 +29,7 @@ from harness.motion.law import MotionLaw
 LONG_ENOUGH = 0.01  # s of CPU time in the motion loop
 COLD_UNTIL = 0.1  # s of CPU time from which on a first flight counts: little of it is what later ones take less
 LONG_FRAME = 1e-3  # s of CPU time a frame from which on it does not matter to the clocks that it is observed
-SHORTEST = 64  # the first flight that warms flies that part of the scene
+FIRST_PART = 1 / 64  # of the scene, which the first flight that warms flies
 MOST_WARMING = 16  # flights that warm, of which the last ten are whole
 MOST_ELAPSED = 0.02  # s that the flights after the first may take with all that is around their loops
 
@@ -50,7 +50,7 @@ def warm(fly: Callable[[MotionLaw], object], law: MotionLaw) -> int:
     began = process_time()
     flights = 0
     while flights < MOST_WARMING and process_time() - began < LONG_ENOUGH:
-        fly(law.beginning(min(1.0, 2.0**flights / SHORTEST)))
+        fly(law.beginning(min(1.0, 2.0**flights * FIRST_PART)))
         flights += 1
     return flights
 

@@ -38,11 +38,9 @@ from harness.store.tables import controls, run_records, run_table, runs
 if TYPE_CHECKING:
     import pandas as pd
 
-Meshes = Opened
-
 
 @dataclass
-class Summary:
+class SweepSummary:
     """What a sweep has done.
 
     Parameters
@@ -103,7 +101,7 @@ class Work(NamedTuple):
 
 def work_of(
     experiments: Sequence[Experiment],
-    meshes: Meshes,
+    meshes: Opened,
     history: History | None,
     *,
     command: str,
@@ -155,20 +153,20 @@ def work_of(
 
 def sweep(
     experiments: Sequence[Experiment],
-    meshes: Meshes,
+    meshes: Opened,
     database: Database,
     *,
     command: str,
     progress: ProgressListener,
     executor: Executor | None = None,
     selection: RunSelection | None = None,
-) -> Summary:
+) -> SweepSummary:
     """Do what is missing of these experiments and keep it.
 
     Parameters
     ----------
     experiments : loaded
-    meshes : every mesh that they name, opened
+    meshes : every mesh that they name, and recorded poses, opened
     database : open for writing
     command : the command line that repeats the sweep
     progress : is called before and after each run
@@ -186,7 +184,7 @@ def sweep(
     machine["fingerprint"] = fingerprint(machine)
     number = database.begin_sweep(command, source_commit(), version("harness"), machine, package_versions(packages()))
     listed = {e.name: database.list_experiment(number, **_listing(e, work, meshes)) for e in experiments}
-    summary = Summary(work.schedule.kept, lacking=list(work.lacking.values()))
+    summary = SweepSummary(work.schedule.kept, lacking=list(work.lacking.values()))
     progress.begin(work.schedule.jobs, work.estimate)
     if executor is None:
         compile_ahead([job.point for job in work.schedule.jobs])
@@ -261,7 +259,7 @@ def _recordings(experiments: Sequence[Experiment], keys: Mapping[int, str], data
     return list(jobs.values())
 
 
-def _count(summary: Summary, finished: FinishedJob) -> None:
+def _count(summary: SweepSummary, finished: FinishedJob) -> None:
     if finished.job.control:
         summary.controls += 1
         return
@@ -271,7 +269,7 @@ def _count(summary: Summary, finished: FinishedJob) -> None:
     summary.seconds[name] += finished.report.conditions.get("seconds", 0.0)
 
 
-def run(experiment: Experiment, meshes: Meshes) -> pd.DataFrame:
+def run(experiment: Experiment, meshes: Opened) -> pd.DataFrame:
     """Run every point of an experiment as often as it says, without a database.
 
     Returns
@@ -309,7 +307,7 @@ class RunError(Exception):
         self.report = report
 
 
-def trace(experiment: Experiment, meshes: Meshes) -> Trace:
+def trace(experiment: Experiment, meshes: Opened) -> Trace:
     """The hits and the final state of the first point of an experiment.
 
     Raises
@@ -327,7 +325,7 @@ def _parameters(point: Point, files: SceneFiles) -> dict[str, Any]:
     return {**point.parameters, **derived_parameters(point, files)}
 
 
-def _listing(experiment: Experiment, work: Work, meshes: Meshes) -> dict[str, Any]:
+def _listing(experiment: Experiment, work: Work, meshes: Opened) -> dict[str, Any]:
     """What the database keeps of an experiment, as arguments of `Database.list_experiment`."""
     named = {point.engine.backend for point in experiment.points}
     return {

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from harness.errors import InputError
 from harness.scene.bounding_sphere import bounding_sphere
 from harness.scene.formats import FORMATS
-from harness.scene.formats.contents import recognised
+from harness.scene.formats.contents import no_file, recognised
 from harness.scene.hull import convex_hull, flat_hull
 from harness.scene.mesh import Mesh, digest, has_area
 from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, of_triangles, scaled
@@ -86,8 +86,8 @@ def _parsed(path: Path) -> PolygonMesh:
         known = ", ".join(f".{name}" for name in FORMATS)
         raise InputError(f"no mesh file: its name must end in one of {known}")
     try:
-        if not path.is_file():
-            raise InputError("there is no such mesh file")
+        if reason := no_file(path):
+            raise InputError(reason)
         size = path.stat().st_size
         if size > MAX_BYTES:
             raise InputError(f"{size / 1024**2:.0f} MiB long; meshes of up to {MAX_BYTES // 1024**2} MiB are read")

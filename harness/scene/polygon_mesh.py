@@ -47,3 +47,14 @@ def scaled(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     _, exponent = np.frexp(np.abs(vertices).max(initial=0.0))
     return np.asarray(np.ldexp(vertices, -exponent))
+
+
+def beyond(count: int, unit: str, faces: int) -> tuple[str, ...]:
+    """The note of a file that goes on behind the faces that it announces: either is wrong, its end or their number.
+
+    >>> beyond(600, "byte", 12), beyond(1, "line", 1)
+    (('600 bytes behind the 12 announced faces passed over',), ('1 line behind the one announced face passed over',))
+    """
+    many = "" if count == 1 else "s"
+    announced = "one announced face" if faces == 1 else f"{faces} announced faces"
+    return (f"{count} {unit}{many} behind the {announced} passed over",)

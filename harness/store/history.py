@@ -126,27 +126,29 @@ def history_of(path: str | Path) -> Iterator[History]:
         yield History(Path(path), connection)
 
 
-_SNAPSHOT: ContextVar[tuple[Path, sqlite3.Connection] | None] = ContextVar("snapshot", default=None)
+# The file of which all is read at one moment, and the connection that does.
+_HELD: ContextVar[tuple[Path, sqlite3.Connection] | None] = ContextVar("held", default=None)
 
 
 @contextmanager
-def snapshot(path: str | Path) -> Iterator[None]:
+def at_one_moment(path: str | Path) -> Iterator[None]:
     """All that is read of a results file inside is of one moment, and by one connection; errors as of `history_of`."""
     with reading(path) as connection:
-        held = _SNAPSHOT.set((Path(path), connection))
+        token = _HELD.set((Path(path), connection))
         try:
             yield
         finally:
-            _SNAPSHOT.reset(held)
+            _HELD.reset(token)
 
 
 @contextmanager
 def reading(path: str | Path) -> Iterator[sqlite3.Connection]:
     """A connection that sees the results as they are at one moment; errors as of `history_of`."""
-    path, held = Path(path), _SNAPSHOT.get()
-    if held is not None and held[0] == path:
+    path = Path(path)
+    held_path, held_connection = _HELD.get() or (None, None)
+    if held_path == path and held_connection is not None:
         with as_input_error(path):
-            yield held[1]
+            yield held_connection
         return
     connection = open_for_reading(path)
     try:

@@ -10,6 +10,7 @@ from typing import Any
 
 from harness.store.connection import as_input_error
 from harness.store.history import reading
+from harness.store.selections import EXPERIMENT_OF_POINT
 
 
 @dataclass(frozen=True)
@@ -41,23 +42,19 @@ def past_runs(path: str | Path, metric: str) -> list[PastRun]:
         The file is missing, empty, damaged, another program's, or of another schema version.
     """
     with reading(path) as connection, as_input_error(Path(path)):
-        points = {
-            number: (text, name)
-            for number, text, name in connection.execute(
-                "SELECT point.id, parameters, (SELECT min(name) FROM experiment_point "
-                "JOIN experiment ON experiment.id = experiment_point.experiment "
-                "WHERE experiment_point.point = point.id) FROM point"
-            )
-        }
+        points = connection.execute(f"SELECT point.id, parameters, {EXPERIMENT_OF_POINT} FROM point").fetchall()
         rows = connection.execute(
             "SELECT fingerprint, sweep, point, value, timing_grade FROM run JOIN machine ON machine.id = run.machine "
             "JOIN metric ON metric.run = run.id WHERE status = 'ok' AND name = ? AND value IS NOT NULL ORDER BY run.id",
             (metric,),
         ).fetchall()
     # another version of the program has measured the same parameters under another key
-    names = {text: name for text, name in points.values() if name is not None}
-    parameters = {text: json.loads(text) for text, _ in points.values()}
+    names = {text: name for _, text, name in points if name is not None}
+    text_of = {point: text for point, text, _ in points}
+    parameters = {text: json.loads(text) for text in text_of.values()}
     return [
-        PastRun(machine, sweep, names.get(points[point][0], ""), parameters[points[point][0]], value, bool(grade))
+        PastRun(
+            machine, sweep, names.get(text_of[point], ""), parameters[text_of[point]], value, timing_grade=bool(grade)
+        )
         for machine, sweep, point, value, grade in rows
     ]

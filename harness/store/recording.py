@@ -102,6 +102,13 @@ class Recording:
         return len(self.sizes)
 
 
+# Columns of the numbers of a body, and of those of a leg; the last two are there where each leg turns in its own way.
+_SIZE, _QUATERNION, _SPIN = 0, slice(1, 5), slice(5, 8)
+_BODY_COLUMNS = 8
+_LEG_BODY, _POSITION, _VELOCITY, _LEG_QUATERNION, _LEG_SPIN = 0, slice(1, 4), slice(4, 7), slice(7, 11), slice(11, 14)
+_LEG_COLUMNS, _TURNING_LEG_COLUMNS = 7, 14
+
+
 def write(connection: sqlite3.Connection, run: int, recording: Recording) -> None:
     """Keep the recording of a run, inside the caller's transaction."""
     facts: dict[str, Any] = {
@@ -235,11 +242,11 @@ def _read(
     ).fetchall()
     frames = connection.execute("SELECT time, data FROM frame WHERE run = ? ORDER BY place", (run,)).fetchall()
     turning = bool(facts.get("turning_legs"))
-    width = 14 if turning else 7
+    width = _TURNING_LEG_COLUMNS if turning else _LEG_COLUMNS
     legs = [np.frombuffer(data, "<f8").reshape(-1, width) for _, data in frames]
     rows = np.concatenate([*legs, np.empty((0, width))])
-    each = np.frombuffer(bodies, "<f8").reshape(-1, 8)
-    if set(rows[:, 0]) != set(range(len(each))):
+    each = np.frombuffer(bodies, "<f8").reshape(-1, _BODY_COLUMNS)
+    if set(rows[:, _LEG_BODY]) != set(range(len(each))):
         raise ValueError("bodies without a leg, or legs without a body")
     digests = facts.get("meshes", [] if digest is None else [digest])
     return Recording(
@@ -247,22 +254,22 @@ def _read(
         duration=facts["duration"],
         dt=facts["dt"],
         half_box=None if facts["half_box"] is None else np.array(facts["half_box"]),
-        sizes=each[:, 0],
-        quaternions=each[:, 1:5],
-        spins=each[:, 5:],
+        sizes=each[:, _SIZE],
+        quaternions=each[:, _QUATERNION],
+        spins=each[:, _SPIN],
         surfaces=tuple(_surface(connection, name) for name in digests),
         surface_of=np.array(facts.get("mesh_of", [0] * len(each)), np.int64),
         leg_times=np.repeat([time for time, _ in frames], [len(leg) for leg in legs]).astype(np.float64),
-        leg_bodies=rows[:, 0].astype(np.int64),
-        leg_positions=rows[:, 1:4],
-        leg_velocities=rows[:, 4:7],
+        leg_bodies=rows[:, _LEG_BODY].astype(np.int64),
+        leg_positions=rows[:, _POSITION],
+        leg_velocities=rows[:, _VELOCITY],
         hit_times=np.array([time for time, *_ in hits], np.float64),
         hit_bodies=np.array([(i, j) for _, i, j, _ in hits], np.int64).reshape(-1, 2),
         hit_walls=np.array([-1 if wall is None else WALLS.index(wall) for *_, wall in hits], np.int64),
         near=_near_lines(facts["near"]) if "near" in facts else None,
         hit_points=_unpacked(facts["hit_points"], "<f8", 3) if "hit_points" in facts else None,
-        leg_quaternions=rows[:, 7:11] if turning else None,
-        leg_spins=rows[:, 11:] if turning else None,
+        leg_quaternions=rows[:, _LEG_QUATERNION] if turning else None,
+        leg_spins=rows[:, _LEG_SPIN] if turning else None,
     )
 
 

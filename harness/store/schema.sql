@@ -24,7 +24,7 @@ CREATE TABLE experiment (
     title         TEXT NOT NULL,
     question      TEXT,
     source        TEXT NOT NULL,            -- the YAML as it was written
-    specification TEXT NOT NULL,            -- JSON, {expect, claims, published, report, swept, measure}
+    specification TEXT NOT NULL,            -- JSON, {expect, claims, published, report, swept, measure, lacking}
     sweep         INTEGER NOT NULL REFERENCES sweep     -- the newest that listed it
 );
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
-from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
 from harness.store.connection import as_input_error
 from harness.store.history import reading
 from harness.store.records import RunRecord, VerdictKind
+from harness.store.selections import EXPERIMENT_OF_POINT, metrics_of
 
 
 @dataclass(frozen=True)
@@ -58,18 +57,12 @@ def snapshot(path: str | Path, sweep: int) -> Snapshot:
     with reading(path) as connection, as_input_error(Path(path)):
         rows = connection.execute(
             "SELECT run.id, key, parameters, repeat, status, reason, sweep, timing_grade, fingerprint, "
-            "(SELECT min(name) FROM experiment_point JOIN experiment ON experiment.id = experiment_point.experiment "
-            "WHERE experiment_point.point = point.id) "
+            f"{EXPERIMENT_OF_POINT} "
             "FROM run JOIN point ON point.id = run.point JOIN machine ON machine.id = run.machine "
             "WHERE run.id IN (SELECT max(id) FROM run WHERE sweep <= ? GROUP BY point, repeat) ORDER BY run.id",
             (sweep,),
         ).fetchall()
-        metrics: dict[int, dict[str, float]] = defaultdict(dict)
-        for run, name, value in connection.execute(
-            "SELECT run, name, value FROM metric WHERE run IN (SELECT value FROM json_each(?))",
-            (json.dumps([row[0] for row in rows]),),
-        ):
-            metrics[run][name] = math.nan if value is None else value
+        metrics = metrics_of(connection, [run for run, *_ in rows])
         controls = {
             (key, repeat): json.loads(clocks)
             for key, repeat, clocks in connection.execute(

@@ -1,4 +1,4 @@
-"""Reading results: the file turned into a table of runs and into records. Nothing else reads the file.
+"""Reading results: the file turned into a table of runs and into records.
 
 Readers cannot write and never wait for a sweep: each sees every run that had finished when it began to read.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import math
 import sqlite3
-from collections import defaultdict
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +23,7 @@ from harness.store.records import (
     VerdictKind,
     VerdictRow,
 )
+from harness.store.selections import metrics_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,13 +94,8 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
             "WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
             (json.dumps(chosen),),
         ).fetchall()
-        metrics: dict[int, dict[str, float]] = defaultdict(dict)
-        for run, name, value in connection.execute(
-            "SELECT run, name, value FROM metric WHERE run IN (SELECT value FROM json_each(?)) ORDER BY metric.rowid",
-            (json.dumps([row[0] for row in rows]),),
-        ):
-            metrics[run][name] = math.nan if value is None else value
-    points = {row[2]: json.loads(row[3]) for row in rows}
+        metrics = metrics_of(connection, [run for run, *_ in rows])
+    points = {key: json.loads(parameters) for _, _, key, parameters, *_ in rows}
     return [
         RunRecord(
             experiment=name,

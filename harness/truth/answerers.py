@@ -16,9 +16,7 @@ from harness.errors import InputError
 from harness.pair.impact import time_of_impact
 from harness.truth.case_scene import CaseScenes, Kind
 from harness.truth.families import TOLERANCE
-from harness.vocabulary import MethodName, PipelineName
-
-OWN = "own"
+from harness.vocabulary import OWN, MethodName, PipelineName
 
 
 class Answer(NamedTuple):
@@ -150,10 +148,10 @@ class _Asked:
                 return None
             self._backend.load(self._scenes.scene(row))
         tolerance = self._backend.tolerance(shape) * sum(kind.sizes) / 2.0
-        told = self._stepped(self._backend, row) if self._question.dt else self._told(self._backend, row)
+        told = self._stepped(self._backend, row) if self._question.dt else self._said(self._backend, row)
         return Answer(*told, tolerance)
 
-    def _told(self, backend: Backend, row: int) -> tuple[float, float]:
+    def _said(self, backend: Backend, row: int) -> tuple[float, float]:
         """When the backend says that they meet, and what it took.
 
         What is to be told are pairs that are apart at the start; whether they touch there, its own test says.

@@ -13,7 +13,7 @@ from harness.compare.budget import Budget
 from harness.compare.exact_gap import ExactGap
 from harness.compare.families import family_poses
 from harness.compare.gap_atlas import SURVEYS
-from harness.compare.own_gaps import OWN
+from harness.vocabulary import OWN
 from tests.compare import liars, recheck
 from tests.conftest import cube_mesh
 

@@ -1,5 +1,6 @@
 """Meshes are found where they may be, and nowhere else."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -86,3 +87,15 @@ def test_only_files_that_can_be_read_are_suggested(places: Path) -> None:
     assert "did you mean" not in refused("duckling.obj")
     (places / "lab" / "duckling.stl").write_text("")
     assert 'did you mean "duckling.stl"?' in refused("duckling.obj")
+
+
+def test_what_stands_there_and_is_no_file_is_called_what_it_is(places):
+    (places / "lab/folder.obj").mkdir()
+    os.mkfifo(places / "lab/pipe.obj")
+    (places / "lab/gone.obj").symlink_to("nowhere")
+    whats = {"folder": "a folder", "pipe": "a pipe or a device", "gone": "a link that leads to no file"}
+    for name, what in whats.items():
+        with pytest.raises(InputError, match=f": it is {what}$"):
+            locate_mesh(f"{name}.obj", places / "lab")
+    with pytest.raises(InputError, match=r"in meshes/$"):  # that there is such a folder outside is not told
+        locate_mesh("../../", places / "lab")

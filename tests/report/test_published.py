@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from harness.report.arrange import arrange
-from harness.report.published import Row, distinct, published_rows, recovered, repetitions
+from harness.report.published import PublishedRow, distinct, published_rows, recovered, repetitions
 from harness.report.sentences.contradictions import contradictions
 from harness.store.tables import experiments, runs
 
@@ -17,7 +17,7 @@ def rows_of(database, name):
 
 
 def row(numbers, **leaves):
-    return Row("x", leaves, numbers, None, "", 0)
+    return PublishedRow("x", leaves, numbers, None, "", 0)
 
 
 def test_the_counts_of_the_row_of_25_bodies_are_those_of_23():

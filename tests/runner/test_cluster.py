@@ -170,7 +170,7 @@ def test_a_worker_with_other_sources_is_refused_before_any_run(small, capsys, mo
     [
         (["--cluster", "tcp://127.0.0.1:9"], "no scheduler answers"),
         (["--cluster", "nowhere"], "must be tcp://HOST:PORT or local:N"),
-        (["--jobs", "0"], "invalid number value"),
+        (["--jobs", "0"], "it must be a whole number, 1 or more"),
     ],
 )
 def test_a_cluster_that_is_not_there_is_a_sentence(small, capsys, monkeypatch, words, said):

@@ -23,6 +23,7 @@ BINARY_STL = stl_binary(TRIANGLES)
 NORMALS = "vt 0 0\n" * 8 + "vn 0 0 1\n" * 8
 # three cubes, each followed by faces that count backwards
 BLOCKS = b"".join(obj(Solid([(x + k, y, z) for x, y, z in CUBE.vertices], *CUBE[1:]), corner="{1}") for k in (0, 2, 4))
+TWO = [obj(Solid([(x + k, y, z) for x, y, z in CUBE.vertices], *CUBE[1:]), corner="{1}") for k in (0, 2)]
 REPEATS = Solid(CUBE.vertices, [[a, b, c, c] for a, b, c in TRIANGLES.polygons], 6, 1)
 HALVES = [Solid(CUBE.vertices, half, 3, 0) for half in (TRIANGLES.polygons[:6], TRIANGLES.polygons[6:])]
 # an element before the vertices, these with a list of their own, and one behind the faces
@@ -74,7 +75,11 @@ READ = [
     ("a.obj", "lines, points and curves beside faces", b"p 1\nl 1 2\nparm u 0 1\n" + obj(CUBE) + b"s off\n", 6, 1),
     ("a.obj", "polygons that repeat a corner", obj(REPEATS), 6, 1),
     ("a.obj", "faces of one and two corners", obj(CUBE) + b"f 1\nf 1 2\n", 6, 1),
+    ("a.obj", "faces of the old name", obj(CUBE, face="fo {}\n"), 6, 1),
+    ("a.obj", "two files with marks, one behind the other", b"".join(b"\xef\xbb\xbf" + part for part in TWO), 12, 2),
+    ("a.obj", "a number that is none, of no face", obj(CUBE) + b"v 1.#QNAN -1.#IND00 1.#INF\n", 6, 1),
     ("a.ply", "mixed lengths", ply(MIXED), 6, 1),
+    ("a.ply", "words behind the faces", ply(CUBE) + b"made by_a program\n", 6, 1),
     ("a.ply", "mixed lengths, binary", ply(MIXED, "<"), 6, 1),
     ("a.ply", "mixed lengths, binary, of other types", ply(MIXED, ">", "double", "ushort", "uint"), 6, 1),
     ("a.ply", "other elements, properties and lists", CROWDED, 6, 1),
@@ -118,6 +123,18 @@ REFUSED = [
     ("a.obj", "a decimal comma", b"v 1,5 2 3\n", 'line 1: "1,5" is not a number'),
     ("a.obj", "no whole number", obj(CUBE) + b"f 1 2 3.5\n", 'line 15: "3.5" is not the number of a vertex'),
     ("a.obj", "no finite number", obj(CUBE).replace(b"1.0 1.0 1.0", b"1 nan 1"), "line 7: 1 of the mesh's vertices"),
+    (
+        "a.obj",
+        "an old compiler's NaN",
+        obj(CUBE).replace(b"1.0 1.0 1.0", b"1 1 1.#QNAN"),
+        "line 7: 1 of the mesh's ver",
+    ),
+    (
+        "a.off",
+        "an old compiler's NaN",
+        off(CUBE).replace(b"1.0 1.0 1.0", b"1 1 -1.#IND"),
+        "line 9: 1 of the mesh's ver",
+    ),
     ("a.obj", "UTF-16", obj(CUBE).decode().encode("utf-16"), "this is UTF-16 text; save it as UTF-8"),
     ("a.obj", "UTF-16 without a mark", obj(CUBE).decode().encode("utf-16-be"), "this is UTF-16 text; save it as UTF-8"),
     ("a.obj", "points", b"v 0 0 0\nv 1 1 1\np 1 2\n", "it has no faces, only vertices, lines or points"),
@@ -129,6 +146,22 @@ REFUSED = [
     ("a.obj", "a pointer", b"version https://git-lfs.github.com/spec/v1\n", "a pointer of Git LFS, not the mesh"),
     ("a.obj", "a page", b"<!DOCTYPE html><html></html>", "this is a web page"),
     ("a.obj", "an archive", b"PK\x03\x04\0\0", "this is a compressed file; unpack it first"),
+    (
+        "a.obj",
+        "an archive that is not compressed",
+        b"a.obj".ljust(257, b"\0") + b"ustar\0",
+        "this is an archive; unpack",
+    ),
+    ("a.stl", "compressed as some kernels are", b"\x28\xb5\x2f\xfd\0\0\0" * 20, "this is a compressed file"),
+    ("a.obj", "another pointer", b"/annex/objects/MD5-s1--0\n", "a pointer of git-annex, not the mesh"),
+    ("a.stl", "a saved page", b"<!-- saved -->\n<html></html>\n", "this is a web page"),
+    ("a.obj", "binary STL under another name", BINARY_STL, "this is a file of another format: name it .stl"),
+    (
+        "a.stl",
+        "OBJ under another name",
+        b"# made by\n#\n\n" + obj(CUBE),
+        "this is a file of another format: name it .obj",
+    ),
     ("a.obj", "PLY under another name", ply(CUBE), "this is a file of another format: name it .ply"),
     ("a.ply", "STL under another name", STL, "this is a file of another format: name it .stl"),
     ("a.ply", "triangle strips", ply(CUBE).replace(b"element face", b"element tristrips"), "triangle strips, which"),

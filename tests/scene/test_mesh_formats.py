@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import os
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from harness.errors import InputError
 from harness.scene.formats import FORMATS
 from harness.scene.mesh_file import read_mesh
 from harness.scene.topology import area, volume
-from tests.scene.mesh_samples import CUBE, L_STRAIGHT, RING, L, Solid, U, obj, off, ply, stl_text
+from tests.scene.mesh_samples import CUBE, L_STRAIGHT, RING, TRIANGLES, L, Solid, U, obj, off, ply, stl_binary, stl_text
 from tests.scene.mesh_tables import READ, REFUSED
 
 POLYGONS = {
@@ -54,6 +55,37 @@ def test_a_refusal_says_the_true_reason_and_the_line(tmp_path, name, what, conte
     assert reason in message
     assert message.startswith(f"{name}: ")
     assert message.isprintable()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "note"),
+    [
+        ("a.stl", stl_binary(TRIANGLES)[:80] + b"\6" + stl_binary(TRIANGLES)[81:], "300 bytes behind the 6 announced"),
+        ("a.ply", ply(CUBE).replace(b"face 6", b"face 3"), "15 words behind the 3 announced faces"),
+        ("a.ply", ply(CUBE, "<").replace(b"face 6", b"face 5"), "17 bytes behind the 5 announced faces"),
+        ("a.off", off(CUBE).replace(b"8 6", b"8 1"), "5 lines behind the one announced face"),
+        ("a.obj", obj(CUBE) + b"ff 1 2 3\n", 'no such line: line 15 begins with "ff"'),
+    ],
+)
+def test_what_a_file_has_beyond_what_it_announces_is_said(tmp_path, name, content, note):
+    notes = read_mesh(written(tmp_path, name, content)).notes
+    assert any(note in said for said in notes), notes
+
+
+def test_what_is_no_file_is_called_what_it_is(tmp_path):
+    (tmp_path / "folder.obj").mkdir()
+    os.mkfifo(tmp_path / "pipe.obj")
+    (tmp_path / "gone.obj").symlink_to("nowhere")
+    (tmp_path / "round.obj").symlink_to("round.obj")
+    for name, reason in (
+        ("folder", "this is a folder"),
+        ("pipe", "this is a pipe or a device"),
+        ("gone", "a link to a file that there is not"),
+        ("round", "cannot be read: Too many levels of symbolic links"),
+        ("none", "there is no such mesh file"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            read_mesh(tmp_path / f"{name}.obj")
 
 
 @pytest.mark.parametrize("name", POLYGONS)

@@ -125,7 +125,7 @@ def test_a_table_has_a_line_a_family_and_says_which_shapes_were_left_out(folder,
         (["--backends", "fcl/grid"], "of one pair there is nothing to leave out"),
         (["--families", "nosuch"], "there is no family nosuch"),
         (["--dt", "0"], "a time must be above 0"),
-        (["--every", "0"], "it must be 1 or more"),
+        (["--every", "0"], "it must be a whole number, 1 or more"),
     ],
 )
 def test_what_cannot_be_asked_is_a_sentence_and_exit_code_2(folder, capsys, arguments, said):

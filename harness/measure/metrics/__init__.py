@@ -48,6 +48,20 @@ def from_outcome(scene: Scene, outcome: Outcome) -> dict[str, float]:
     ----------
     scene : Scene, at the start of the run
     outcome : what the run came to. Its trace is None where nobody has asked for its hits
+
+    Raises
+    ------
+    RuntimeError
+        The function of a metric has failed, which is named.
     """
-    made = {name: metric.measure(scene, outcome) for name, metric in METRICS.items() if metric.measure is not None}
-    return {name: value for name, value in made.items() if value is not None}
+    made: dict[str, float] = {}
+    for name, metric in METRICS.items():
+        if metric.measure is None:
+            continue
+        try:
+            value = metric.measure(scene, outcome)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            raise RuntimeError(f"the metric {name} cannot be measured: {type(error).__name__}: {error}") from error
+        if value is not None:
+            made[name] = value
+    return made

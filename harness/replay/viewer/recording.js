@@ -5,19 +5,19 @@ export const WALLS = ["x−", "x+", "y−", "y+", "z−", "z+"];
 
 export class Recording {
   /** From the document that the page carries, or that a server sends. */
-  constructor(text) {
-    const bytes = Uint8Array.from(atob(text.data), (character) => character.charCodeAt(0)).buffer;
-    for (const [name, [kind, offset, length]] of Object.entries(text.arrays))
+  constructor(recorded) {
+    const bytes = Uint8Array.from(atob(recorded.data), (character) => character.charCodeAt(0)).buffer;
+    for (const [name, [kind, offset, length]] of Object.entries(recorded.arrays))
       this[name] = new KINDS[kind](bytes, offset, length);
-    this.title = text.title;
-    this.shape = text.shape;
-    this.mesh = text.mesh;
-    this.duration = text.duration;
-    this.dt = text.dt;
-    this.halfBox = text.half_box;
-    this.middle = text.middle;
-    this.boxed = text.box;
-    this.facts = text.facts;
+    this.title = recorded.title;
+    this.shape = recorded.shape;
+    this.mesh = recorded.mesh;
+    this.duration = recorded.duration;
+    this.dt = recorded.dt;
+    this.halfBox = recorded.half_box;
+    this.middle = recorded.middle;
+    this.boxed = recorded.box;
+    this.facts = recorded.facts;
     this.count = this.sizes.length;
     this.hits = this.hit_times.length;
     this.meshes = this.vertices ? Array.from({ length: this.face_starts.length - 1 }, (_, mesh) => this._mesh(mesh)) : [];

@@ -1,5 +1,7 @@
 // What bodies look like: vertices with normals for drawing, and a coarser form for bodies that are small on the screen.
 
+import { cross } from "./matrix.js";
+
 const CREASE = Math.cos(0.6); // faces that meet at a sharper angle (rad) do not share a normal
 
 /** Vertices, normals and corner numbers of a triangle mesh; corners that share a place and a normal are one. */
@@ -42,7 +44,7 @@ function faceNormal(vertices, faces, face) {
   const [a, b, c] = [0, 1, 2].map((corner) => 3 * faces[3 * face + corner]);
   const u = [0, 1, 2].map((axis) => vertices[b + axis] - vertices[a + axis]);
   const v = [0, 1, 2].map((axis) => vertices[c + axis] - vertices[a + axis]);
-  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  return cross(u, v);
 }
 
 /** The same mesh with the vertices of each cell of a grid merged into one: enough for a body of few pixels. */

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 from markupsafe import Markup
 
-from harness.report.accuracy.texts import interval_text, knob_text, scene_of, target_text
+from harness.report.accuracy.texts import knob_text, scene_of, target_text
 from harness.report.accuracy.tradeoffs import Costed, Tradeoff
-from harness.report.quantity import number, quantity
+from harness.report.quantity import quantity
 from harness.report.ranking import unranked
+from harness.report.sentences.ratio import ratio_text
 
 
 def decision(tradeoff: Tradeoff) -> Markup | None:
@@ -20,7 +19,7 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
     found = tradeoff.ratios(target)
     best, *others = found
     what = Markup("For {} at an error of {}, ").format(scene_of(tradeoff), target_text(target, tradeoff.kind.unit))
-    why_not = unranked(entry.told for entry in found)
+    why_not = unranked(entry.distinction for entry in found)
     if why_not:
         costs = Markup(", ").join(_cost(entry) for entry in sorted(found, key=lambda entry: entry.curve.style))
         return what + Markup("the CPU time is {}: {}.").format(costs, why_not)
@@ -28,16 +27,13 @@ def decision(tradeoff: Tradeoff) -> Markup | None:
         best.curve.label, knob_text(best.curve, best.setting), quantity(best.setting.cost.median, "s")
     )
     tied = [entry.curve.label for entry in others if entry.tied]
-    dearer = [entry for entry in others if not entry.tied]
+    dearer = [(entry, entry.ratio) for entry in others if not entry.tied and entry.ratio is not None]
     if tied:
         text += Markup(", not to be told from {}").format(" and ".join(tied))
     if dearer:
-        next_one = dearer[0]
-        text += Markup(": <strong>{}×</strong>{} cheaper than {}{}").format(
-            number(next_one.ratio.median if next_one.ratio else math.nan),
-            interval_text(next_one.ratio),
-            next_one.curve.label,
-            knob_text(next_one.curve, next_one.setting),
+        next_one, ratio = dearer[0]
+        text += Markup(": {} cheaper than {}{}").format(
+            ratio_text(ratio), next_one.curve.label, knob_text(next_one.curve, next_one.setting)
         )
     short = [curve.label for curve in tradeoff.curves if curve.cheapest(target) is None]
     if short:

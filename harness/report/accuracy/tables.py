@@ -30,7 +30,7 @@ def fastest(tradeoff: Tradeoff) -> Table:
     kind = tradeoff.kind
     for target in kind.targets:
         reached = {entry.curve.label: entry for entry in tradeoff.ratios(target)}
-        why_not = unranked(entry.told for entry in reached.values())
+        why_not = unranked(entry.distinction for entry in reached.values())
         reasons |= {why_not: None} if why_not else {}
         row = [Entry(target_text(target, kind.unit), numeric=False, sort=target)]
         for curve in tradeoff.curves:
@@ -102,7 +102,7 @@ def every_setting(found: Sequence[Tradeoff]) -> Table:
         knob = f"{curve.knob} {leaf_text(entry.knob)}" if curve.knob else "exact"
         row += [Entry(knob, numeric=False, mark="keep", sort=entry.knob)]
         row += [Entry(unit.text(entry.cost.median), sort=plain(entry.cost.median))]
-        row += [_seconds(entry.point.median(name)) for name in (kind.metric, kind.tail)]
+        row += [_error(entry.point.median(name)) for name in (kind.metric, kind.tail)]
         row += [_share(entry.point.median(name)) for name in (kind.missed, kind.extra)]
         row += [_share(entry.point.median("missed_hits_expected"), flagged=False)] if expected else []
         row += [counted(entry.point.median(kind.known))]
@@ -153,7 +153,7 @@ def _why_not(curve: Curve) -> str:
     return f"{number(100 * min(found.wrong for found in curve.settings))} % of {things} wrong"
 
 
-def _seconds(value: float) -> Entry:
+def _error(value: float) -> Entry:
     return Entry(number(value), sort=plain(value))
 
 

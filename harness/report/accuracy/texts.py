@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
-from harness.measure.statistics import Summary
 from harness.report.accuracy.error_kind import GAPS
 from harness.report.accuracy.tradeoffs import MOST_WRONG, Curve, Setting, Tradeoff
 from harness.report.quantity import leaf_text, number, power_of_ten, quantity
 from harness.report.words import scene_text
 
 WRONG_TEXT = f"{100 * MOST_WRONG:g} %"
-"""Of how many hits wrong a method counts no more."""
+"""The share of hits that a method may get wrong and still count."""
 
 
 def scene_of(tradeoff: Tradeoff) -> str:
@@ -45,11 +44,3 @@ def time_text(value: float) -> str:
 def error_text(value: float, unit: str) -> str:
     """An error in its unit."""
     return time_text(value) if unit == "s" else f"{number(value)}\u00a0{unit}"
-
-
-def interval_text(ratio: Summary | None) -> str:
-    """The interval of a ratio in brackets; nothing where it has none."""
-    if ratio is None or ratio.n < 2:
-        return ""
-    text = f" [{number(ratio.low)}, {number(ratio.high)}]"
-    return text if ratio.coverage is not None else f"{text} (range)"

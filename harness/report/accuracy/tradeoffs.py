@@ -8,16 +8,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from harness.measure.resolution import Outcome, Resolution
+from harness.measure.resolution import Distinction, Resolution
 from harness.measure.statistics import Exponent, Summary, fit_exponent
 from harness.report.accuracy.error_kind import ErrorKind, error_kind
 from harness.report.methods import method_label
 from harness.report.point import MeasuredPoint
-from harness.report.ranking import times_worse, told
+from harness.report.ranking import tell_apart, times_worse
 from harness.report.series import Arrangement
 from harness.report.styles import styles_of
 from harness.report.words import leaf_label
@@ -28,6 +27,8 @@ COST = "run_seconds"
 # Of the reference's hits, how many a method may miss, and how many more it may report, to count as right.
 MOST_WRONG = 0.01
 FEWEST_SETTINGS = 3
+# What follows from the mesh and the box: it tells no scenes apart that these do not.
+_FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,18 +97,18 @@ class Costed:
     Parameters
     ----------
     ratio : how many times it costs what the cheapest method costs; None of that itself, and where nothing can be paired
-    told : whether that ratio is told from 1
+    distinction : whether that ratio is told from 1
     """
 
     curve: Curve
     setting: Setting
     ratio: Summary | None
-    told: Outcome
+    distinction: Distinction
 
     @property
     def tied(self) -> bool:
         """Whether it is the cheapest, or cannot be told apart from it."""
-        return self.told != "apart"
+        return self.distinction != "apart"
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,16 +150,20 @@ class Tradeoff:
     def ranked(self, target: float) -> list[tuple[Curve, Setting]]:
         """The methods that reach an error, each at its cheapest setting, the cheapest method first."""
         found = [(curve, cheapest) for curve in self.curves if (cheapest := curve.cheapest(target)) is not None]
-        return sorted(found, key=lambda entry: entry[1].cost.median)
+        found.sort(key=lambda entry: entry[-1].cost.median)
+        return found
 
     def ratios(self, target: float) -> list[Costed]:
         """The same, each with how many times it costs what the first costs."""
         ranked = self.ranked(target)
         if not ranked:
             return []
-        best = ranked[0][1].point
+        (_, cheapest), *_ = ranked
+        best = cheapest.point
         return [
-            Costed(curve, found, times_worse(found.point, best, COST), told(found.point, best, COST, self.resolution))
+            Costed(
+                curve, found, times_worse(found.point, best, COST), tell_apart(found.point, best, COST, self.resolution)
+            )
             if place
             else Costed(curve, found, None, "same")
             for place, (curve, found) in enumerate(ranked)
@@ -188,10 +193,6 @@ def tradeoffs(record: ExperimentRecord, arrangement: Arrangement) -> list[Tradeo
             place = ", ".join(leaf_label(leaf, points[0].parameters.get(leaf)) for leaf in leaves)
             found.append(Tradeoff(record, place, curves, arrangement.resolution(COST)))
     return found
-
-
-# What follows from the mesh and the box: it tells no scenes apart that these do not.
-_FOLLOWS = ("faces", "hull_vertices", "packing", "box_side")
 
 
 def _curves(points: Sequence[MeasuredPoint]) -> tuple[Curve, ...]:
@@ -227,12 +228,12 @@ def _setting(point: MeasuredPoint, knob: str) -> Setting | None:
     return Setting(point, float(point.parameters[knob]), cost, error, known, kind)
 
 
-def _differing(points: Sequence[MeasuredPoint], wanted: Any) -> list[str]:
+def _differing(points: Sequence[MeasuredPoint], wanted: Callable[[str], bool]) -> list[str]:
     leaves = [leaf for leaf in points[0].parameters if wanted(leaf) and leaf not in _FOLLOWS] if points else []
     return [leaf for leaf in leaves if len({_text(point, leaf) for point in points}) > 1]
 
 
-def _key(point: MeasuredPoint, wanted: Any) -> str:
+def _key(point: MeasuredPoint, wanted: Callable[[str], bool]) -> str:
     return json.dumps({leaf: value for leaf, value in point.parameters.items() if wanted(leaf)}, sort_keys=True)
 
 

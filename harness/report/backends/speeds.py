@@ -13,7 +13,7 @@ from harness.report.backends.correctness import Correctness
 from harness.report.experiment import ExperimentPage
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import number, plural, scale
-from harness.report.ranking import told, unranked
+from harness.report.ranking import tell_apart, unranked
 from harness.report.table import Column, Entry, Table, plain, words
 from harness.vocabulary import MethodName
 
@@ -80,11 +80,11 @@ def _fastest(
         return (), "several scenes in one column"
     points = {method: found[0] for method, found in measured.items()}
     best = min(points, key=lambda method: points[method].median(SPEED))
-    outcomes = {
-        method: told(point, points[best], SPEED, resolution) for method, point in points.items() if method != best
+    distinctions = {
+        method: tell_apart(point, points[best], SPEED, resolution) for method, point in points.items() if method != best
     }
-    why_not = unranked(outcomes.values())
-    return ((), why_not) if why_not else ({best, *(m for m, outcome in outcomes.items() if outcome != "apart")}, "")
+    why_not = unranked(distinctions.values())
+    return ((), why_not) if why_not else ({best, *(m for m, found in distinctions.items() if found != "apart")}, "")
 
 
 def _scene_value(point: MeasuredPoint, leaf: str) -> float:
@@ -94,8 +94,12 @@ def _scene_value(point: MeasuredPoint, leaf: str) -> float:
 
 def _label(method: MethodName, methods: Sequence[MethodName]) -> str:
     """Backend and algorithm, and what else tells it from the others."""
-    leaves = [leaf for place, leaf in enumerate(method) if place < 2 or len({other[place] for other in methods}) > 1]
-    return ", ".join(leaves)
+    differing = [
+        name
+        for name in MethodName._fields
+        if name in ("backend", "algorithm") or len({getattr(other, name) for other in methods}) > 1
+    ]
+    return ", ".join(getattr(method, name) for name in differing)
 
 
 def _correctness(method: MethodName, known: Correctness) -> Entry:

@@ -6,7 +6,7 @@ import math
 
 from harness.report.backends.comparisons import KINDS, Comparisons
 from harness.report.quantity import number
-from harness.report.table import Column, Entry, Table, plain, words
+from harness.report.table import Column, Entry, Table, counted, counted_bad, plain, words
 
 
 def agreement(compared: Comparisons) -> Table:
@@ -42,9 +42,9 @@ def by_experiment(compared: Comparisons) -> Table:
                 words(f"{a}, {b}"),
                 words(tally["shape"]),
                 words(tally.get("query", "collision")),
-                *(_count(tally[name]) for name in ("poses", "verdicts", "agree", *KINDS[:3])),
-                _count(tally["real"], bad=True),
-                _count(crashes, bad=True),
+                *(counted(tally[name]) for name in ("poses", "verdicts", "agree", *KINDS[:3])),
+                counted_bad(tally["real"]),
+                counted_bad(crashes),
             )
         )
     columns = (
@@ -72,8 +72,8 @@ def approximations(compared: Comparisons) -> Table | None:
             rows.append(
                 (
                     words(record.experiment), words(one["backend"]), words(other),
-                    _count(one["touching"]), _count(one["reported"]),
-                    _share(one["false_share"], one["false_hits"]), _count(one["contained"]),
+                    counted(one["touching"]), counted(one["reported"]),
+                    _share(one["false_share"], one["false_hits"]), counted(one["contained"]),
                     _share(one["missed_share"], one["misses"]),
                 )
             )  # fmt: skip
@@ -103,10 +103,10 @@ def flights(compared: Comparisons) -> Table | None:
                         words(record.experiment),
                         words(one["backend"]),
                         Entry(number(parted) if parted is not None else "never", sort=plain(parted)),
-                        _count(flight["shared_hits"]),
-                        Entry(number(one["pair_hits_per_second"]), sort=plain(one["pair_hits_per_second"])),
-                        Entry(number(one["box_hits_per_second"]), sort=plain(one["box_hits_per_second"])),
-                        Entry(number(one["energy_change"]), sort=plain(one["energy_change"])),
+                        counted(flight["shared_hits"]),
+                        counted(one["pair_hits_per_second"]),
+                        counted(one["box_hits_per_second"]),
+                        counted(one["energy_change"]),
                     )
                 )
     if not rows:
@@ -135,12 +135,6 @@ def _meeting(compared: Comparisons, name: str, other: str) -> Entry:
     listed = ", ".join(f"{number(count)} {kind}" for kind, count in counts.items() if count and kind != "real")
     flag = f"{number(counts['real'])} real" if counts["real"] else ""
     return Entry(share, small=listed, numeric=False, flag=flag)
-
-
-def _count(value: float, bad: bool = False) -> Entry:
-    if bad and value:
-        return Entry("", flag=number(value), sort=plain(value))
-    return Entry(number(value), sort=plain(value))
 
 
 def _share(value: float, count: int) -> Entry:

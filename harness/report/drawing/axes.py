@@ -14,6 +14,8 @@ from harness.report.quantity import as_given, number, power_of_ten
 Form = Literal["wide", "narrow", "card"]
 """Every drawing is made for desks and for phones: the lettering of one scaled to the other cannot be read."""
 
+# px, how wide a drawing is.
+WIDTHS: dict[Form, float] = {"wide": 1080.0, "narrow": 360.0, "card": 340.0}
 FONT = 13.0  # px
 CHARACTER = 7.0  # px, generous for a proportional font of that size
 
@@ -40,6 +42,7 @@ class Frame:
 
 
 def x_ticks(canvas: Canvas, frame: Frame, ticks: Sequence[tuple[float, str]]) -> None:
+    """Lines at these values of x, with their texts below the frame."""
     places = [frame.x(value) for value, _ in ticks]
     canvas.line(
         [value for x in places for value in (x, x, math.nan)],
@@ -52,6 +55,7 @@ def x_ticks(canvas: Canvas, frame: Frame, ticks: Sequence[tuple[float, str]]) ->
 
 
 def y_ticks(canvas: Canvas, frame: Frame, most: int) -> None:
+    """Lines at round numbers of y, no more than so many, with their texts to the left of the frame."""
     ticks = round_numbers(frame.y_range, frame.logarithmic, most)
     places = [frame.y(value) for value in ticks]
     canvas.line(
@@ -79,7 +83,7 @@ def round_numbers(bounds: tuple[float, float], logarithmic: bool, most: int) -> 
     return inside[:: math.ceil(len(inside) / most)]
 
 
-EDGE = 1e-9
+_EDGE = 1e-9
 """Of a step: a number that is no farther outside of the bounds lies on one, but for rounding."""
 
 
@@ -99,7 +103,7 @@ def even_numbers(low: float, high: float, most: int, steps: Sequence[float] = (1
     enough = next(place for place, step in enumerate(ordered) if step >= (high - low) / most)
     found: list[float] = []
     for step in ordered[enough::-1]:
-        first, last = math.ceil(low / step - EDGE), math.floor(high / step + EDGE)
+        first, last = math.ceil(low / step - _EDGE), math.floor(high / step + _EDGE)
         found = [place * step for place in range(first, last + 1)]
         if len(found) > 1:
             break
@@ -114,6 +118,7 @@ def tick_text(value: float) -> str:
 
 
 def shorten(text: str, characters: float) -> str:
+    """The text, or its beginning and an ellipsis where it is longer than that."""
     keep = max(2, int(characters))
     return text if len(text) <= keep else f"{text[: keep - 1]}…"
 

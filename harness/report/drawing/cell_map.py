@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from harness.report.drawing import palette
-from harness.report.drawing.axes import CHARACTER, FONT, Form, shorten
+from harness.report.drawing.axes import CHARACTER, FONT, WIDTHS, Form, shorten
 from harness.report.drawing.canvas import Canvas
 
 _LEFT, _BOTTOM, _TOP = 76.0, 46.0, 28.0
@@ -16,7 +16,7 @@ _GAP = 1.5  # px of the page between cells
 
 
 @dataclass(frozen=True)
-class Cell:
+class DrawnCell:
     """A cell: its column and row, the style and the letter of the method, whether in doubt, and what it says."""
 
     column: int
@@ -36,7 +36,7 @@ class Grid:
     rows: tuple[str, ...]
     x_label: str
     y_label: str
-    cells: tuple[Cell, ...]
+    cells: tuple[DrawnCell, ...]
 
 
 def draw_maps(grids: Sequence[Grid], form: Form, name: str) -> str:
@@ -49,7 +49,7 @@ def draw_maps(grids: Sequence[Grid], form: Form, name: str) -> str:
     name : prefix of every id in the drawing, unique on its page
     """
     across = min(3, len(grids)) if form == "wide" else 1
-    width = {"wide": 1080.0, "narrow": 360.0, "card": 340.0}[form] / across
+    width = WIDTHS[form] / across
     height = _TOP + _BOTTOM + _ROW * max(len(grid.rows) for grid in grids)
     lines = -(-len(grids) // across)
     canvas = Canvas(width * across, height * lines, FONT)
@@ -75,7 +75,7 @@ def _draw(canvas: Canvas, grid: Grid, left: float, bottom: float, width: float) 
     canvas.text(x, y + len(grid.rows) * _ROW + 9, shorten(grid.title, (width - _LEFT) / CHARACTER))
 
 
-def _cell(canvas: Canvas, cell: Cell, x: float, y: float, width: float) -> None:
+def _cell(canvas: Canvas, cell: DrawnCell, x: float, y: float, width: float) -> None:
     height, colour = _ROW - 2 * _GAP, palette.colour(cell.style)
     canvas.area([x, x + width, x + width, x], [y, y, y + height, y + height], colour, alpha=0.34)
     canvas.line([x, x + width, x + width, x, x], [y, y, y + height, y + height, y], colour, 1.6)

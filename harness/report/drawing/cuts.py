@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 
 from harness.report.drawing import palette
-from harness.report.drawing.axes import FONT
+from harness.report.drawing.axes import FONT, WIDTHS
 from harness.report.drawing.canvas import Canvas
 
 
 def draw_cut(cuts: Sequence[Sequence[Sequence[float]]], name: str) -> str:
     """Two bodies cut by a plane, each as segments, as an SVG element of 340 px in sentinel colours."""
-    width, height = 340.0, 220.0
+    width, height = WIDTHS["card"], 220.0
     canvas = Canvas(width, height, FONT)
     points = [(x, y) for cut in cuts for segment in cut for x, y in (segment[:2], segment[2:])]
     if not points:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from harness.report.drawing import palette
-from harness.report.drawing.axes import CHARACTER, FONT, Form
+from harness.report.drawing.axes import CHARACTER, FONT, WIDTHS, Form, shorten
 from harness.report.drawing.canvas import Canvas
 from harness.report.quantity import power_of_ten
 
@@ -27,7 +27,7 @@ def draw_gaps(rows: Mapping[str, Row], kinds: Sequence[str], form: Form, name: s
     name : prefix of every id in the drawing
     """
     wide = form == "wide"
-    width, height = (1080.0, 34.0) if wide else (360.0, 52.0)
+    width, height = WIDTHS[form], 34.0 if wide else 52.0
     left = min(330.0, 24 + CHARACTER * max(map(len, rows))) if wide else 10.0
     canvas = Canvas(width, height * len(rows) + 62, FONT)
     bottom, top = 44.0, 44.0 + height * len(rows)
@@ -48,7 +48,7 @@ def draw_gaps(rows: Mapping[str, Row], kinds: Sequence[str], form: Form, name: s
         if wide:
             canvas.text(left - 12, y, label, horizontal="right", vertical="center")
         else:
-            canvas.text(left, y + 13, label[:48])
+            canvas.text(left, y + 13, shorten(label, 48))
             y -= 8
         canvas.line([x(-DECADES), x(DECADES)], [y, y], palette.GRID, 1.0)
         for kind in sorted(row, key=lambda kind: -sum(row[kind].values())):
@@ -61,6 +61,6 @@ def draw_gaps(rows: Mapping[str, Row], kinds: Sequence[str], form: Form, name: s
 
 def _ticks(wide: bool) -> list[tuple[int, str]]:
     marks = (15, 12, 9, 6, 3) if wide else (9, 3)
-    places = [(17 - mark, mark) for mark in marks]
+    places = [(DECADES + 1 - mark, mark) for mark in marks]
     left = [(-place, f"−{power_of_ten(-mark)}") for place, mark in places]
     return [*left, (0, "0"), *((place, power_of_ten(-mark)) for place, mark in places)]

@@ -11,6 +11,7 @@ from harness.report.drawing import palette
 from harness.report.drawing.axes import (
     CHARACTER,
     FONT,
+    WIDTHS,
     Form,
     Frame,
     round_numbers,
@@ -80,7 +81,7 @@ def draw_panels(panels: Sequence[Panel], form: Form, name: str, labels: bool = T
     """
     columns = 1 if form != "wide" or len(panels) == 1 else 2
     rows = math.ceil(len(panels) / columns)
-    width = {"wide": 1080.0, "narrow": 360.0, "card": 340.0}[form] / columns
+    width = WIDTHS[form] / columns
     height = {"wide": 440.0 if columns == 1 else 330.0, "narrow": 290.0, "card": 170.0}[form]
     canvas = Canvas(width * columns, height * rows, FONT if form != "card" else _CARD_FONT)
     for place, panel in enumerate(panels):

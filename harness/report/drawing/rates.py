@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from harness.report.drawing import palette
-from harness.report.drawing.axes import CHARACTER, FONT, Form
+from harness.report.drawing.axes import CHARACTER, FONT, WIDTHS, Form
 from harness.report.drawing.canvas import Canvas
 
 
@@ -27,7 +27,7 @@ def draw_rates(
     name : prefix of every id in the drawing
     """
     wide = form == "wide"
-    width, height = (1080.0, 34.0) if wide else (360.0, 30.0)
+    width, height = WIDTHS[form], 34.0 if wide else 30.0
     left = 24 + CHARACTER * max(map(len, rows))
     head = 40.0 if wide else 20 + CHARACTER * max(map(len, columns))
     canvas = Canvas(width, height * len(rows) + head + 8, FONT)

@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 
 from harness.errors import InputError
-from harness.measure.metrics import DERIVED, METRICS
+from harness.measure.metrics import METRICS
 from harness.measure.noise import level
 from harness.measure.statistics import Summary, summary
 from harness.measure.steps import candidates, common_noise
+from harness.report.point_labels import labels_of
 from harness.report.sweeps.difference import CLOCK, DRIFT, FEWEST_FOR_DRIFT, MOST_DRIFT
-from harness.report.words import leaf_label
 from harness.store.past import PastRun, past_runs
 from harness.store.records import SweepRecord
 from harness.store.tables import machines, sweeps
@@ -142,7 +142,7 @@ def _machine(
         steps = _steps(values, drifts, known)
     else:
         steps = _steps(values, dict.fromkeys(numbers, 1.0), known)
-    labels = _labels(of_point)
+    labels = labels_of({key: (run.experiment, run.parameters) for key, run in of_point.items()})
     points = [
         PointHistory(run.experiment, labels[key], run.parameters, values[key], tuple(steps.get(key, ())))
         for key, run in of_point.items()
@@ -202,21 +202,6 @@ def _changes(values: Mapping[int, Summary], known: Mapping[int, SweepRecord]) ->
         for before, after in pairwise(numbers)
         if values[before].median != values[after].median
     ]
-
-
-def _labels(points: Mapping[str, PastRun]) -> dict[str, str]:
-    """For each point the leaves that differ among those of its experiment."""
-    grouped: dict[str, list[str]] = defaultdict(list)
-    for key, run in points.items():
-        grouped[run.experiment].append(key)
-    labels = {}
-    for keys in grouped.values():
-        leaves = list(dict.fromkeys(leaf for key in keys for leaf in points[key].parameters))
-        values = {leaf: {json.dumps(points[key].parameters.get(leaf)) for key in keys} for leaf in leaves}
-        swept = [leaf for leaf in leaves if leaf not in DERIVED and len(values[leaf]) > 1]
-        for key in keys:
-            labels[key] = ", ".join(leaf_label(leaf, points[key].parameters.get(leaf)) for leaf in swept)
-    return labels
 
 
 def package_changes(sweep: SweepRecord, before: SweepRecord | None) -> list[str]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.report.lines import interval_text
-from harness.report.map.cells import Cell, MethodMap, method_of, resolution_of
+from harness.report.map.cells import Cell, MethodMap, method_of, time_accuracy
 from harness.report.quantity import leaf_text, number, scale
 from harness.report.ranking import Ranked
 from harness.report.styles import style_of
@@ -75,7 +75,7 @@ def _answer(made: MethodMap, cell: Cell) -> Answer:
         cost=_cost(made, best),
         sure=_sure(cell),
         second=_second(cell),
-        yaml=_yaml(method, resolution_of(best.series)),
+        yaml=_yaml(method, time_accuracy(best.series)),
     )
 
 

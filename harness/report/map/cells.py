@@ -50,14 +50,14 @@ class Cell:
         """Why the fastest cannot be told; "" where it can."""
         if len(self.ranked) < 2:
             return "" if self.ranked else "not measured, or nobody is right"
-        if self.told:
+        if self.decided:
             return ""
-        why = unranked(entry.told for entry in self.ranked if entry.told != "apart")
+        why = unranked(entry.distinction for entry in self.ranked if entry.distinction != "apart")
         tied = " and ".join(method_of(entry.series).label for entry in self.ranked if entry.tied)
         return why or f"{tied} cannot be told apart"
 
     @property
-    def told(self) -> bool:
+    def decided(self) -> bool:
         """Whether the fastest is ahead of every other."""
         return len(self.ranked) == 1 or bool(self.ranked and not any(entry.tied for entry in self.ranked[1:]))
 
@@ -135,7 +135,7 @@ def method_of(series: Series) -> MethodName:
     return MethodName.of(series.points[0].parameters)
 
 
-def resolution_of(series: Series) -> float:
+def time_accuracy(series: Series) -> float:
     """To what it tells the time of a hit, s; 0 where it computes events or asks for times."""
     method = method_of(series)
     if not method.stepped or method.query == "impact":
@@ -150,8 +150,10 @@ def _maps(page: ExperimentPage) -> Iterable[MethodMap]:
         return
     kinds = dict.fromkeys((method_of(line).shape, method_of(line).query) for line in arrangement.series)
     for shape, query in kinds:
-        lines = [line for line in arrangement.series if method_of(line)[2:] == (shape, query)]
-        steps = sorted({resolution_of(line) for line in lines} - {0.0}, reverse=True) or [0.0]
+        lines = [
+            line for line in arrangement.series if (method_of(line).shape, method_of(line).query) == (shape, query)
+        ]
+        steps = sorted({time_accuracy(line) for line in lines} - {0.0}, reverse=True) or [0.0]
         for place, accuracy in enumerate(steps):
             yield MethodMap(
                 f"{page.record.name}-{shape}-{query}-{place}".replace("/", "-"),
@@ -169,8 +171,8 @@ def _maps(page: ExperimentPage) -> Iterable[MethodMap]:
 def _sufficient(lines: Sequence[Series], accuracy: float) -> list[Series]:
     """Of each method the series with the longest step that is exact enough."""
     longest: dict[tuple[MethodName, str], Series] = {}
-    for line in sorted(lines, key=resolution_of):
-        if resolution_of(line) <= accuracy:
+    for line in sorted(lines, key=time_accuracy):
+        if time_accuracy(line) <= accuracy:
             longest[method_of(line), line.panel] = line
     return list(longest.values())
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from harness.report.drawing.cell_map import Cell, Grid, draw_maps
+from harness.report.drawing.cell_map import DrawnCell, Grid, draw_maps
 from harness.report.figure import Figure, Key
 from harness.report.map.answers import answers
 from harness.report.map.cells import MethodMap
@@ -37,7 +37,7 @@ def map_figure(maps: Sequence[MethodMap], name: str = "map") -> Figure:
 
 def _grid(made: MethodMap) -> Grid:
     cells = tuple(
-        Cell(
+        DrawnCell(
             made.xs.index(answer.cell.x),
             made.ys.index(answer.cell.y),
             answer.style,

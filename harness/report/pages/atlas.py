@@ -11,7 +11,7 @@ from harness.report.page import Content, Page
 from harness.report.quantity import number
 from harness.report.results import Results
 from harness.report.sentences.atlas import atlas_sentences
-from harness.report.table import Column, Entry, Table, plain, words
+from harness.report.table import Column, Entry, Table, counted, counted_bad, plain, words
 from harness.vocabulary import FAMILIES
 
 
@@ -62,18 +62,14 @@ def _row(engine: str, family: str, cell: Mapping[str, Any]) -> tuple[Entry, ...]
     return (
         words(engine),
         words(family),
-        Entry(number(cell["verdicts"]), sort=plain(cell["verdicts"])),
-        Entry(number(cell["wrong"]), sort=plain(cell["wrong"])),
+        counted(cell["verdicts"]),
+        counted(cell["wrong"]),
         Entry(number(rate), small=interval, sort=plain(rate)),
-        _bad(cell["beyond"]),
-        Entry(number(cell["deepest"]), sort=plain(cell["deepest"])),
+        counted_bad(cell["beyond"]),
+        counted(cell["deepest"]),
         Entry(number(1e6 * cell["seconds"]) if cell["seconds"] else "", sort=plain(cell["seconds"])),
-        _bad(cell["failures"]),
+        counted_bad(cell["failures"]),
     )
-
-
-def _bad(count: int) -> Entry:
-    return Entry("", flag=number(count), sort=plain(count)) if count else Entry("0", sort=0.0)
 
 
 def _cases(part: AtlasPart) -> list[tuple[str, str, list[str]]]:

@@ -9,14 +9,14 @@ from harness.report.figure import figures_of
 from harness.report.page import Content, Page
 from harness.report.quantity import number, plural
 from harness.report.results import Results
-from harness.report.table import Column, Entry, Table, plain, words
+from harness.report.table import Column, Entry, Table, counted, counted_bad, plain, words
 from harness.report.truth import ALL, TruthPart
 
 _KINDS = ("missed", "late", "early", "false", "failed")
 
 
 def _content(results: Results) -> Content | None:
-    asked = results.asked
+    asked = results.truth
     if not asked.records:
         return None
     figures = figures_of("truth", asked)
@@ -69,9 +69,9 @@ def _row(engine: str, family: str, found: Mapping[str, Any]) -> tuple[Entry, ...
     return (
         words(engine),
         words(family),
-        Entry(number(found["asked"]), sort=plain(found["asked"])),
-        Entry(number(found["right"]), sort=plain(found["right"])),
-        *(_bad(found[kind]) for kind in _KINDS),
+        counted(found["asked"]),
+        counted(found["right"]),
+        *(counted_bad(found[kind]) for kind in _KINDS),
         *(_seconds(found[name]) for name in ("latest", "earliest")),
         Entry(number(1e3 * seconds) if seconds else "", sort=plain(seconds or 0.0)),
     )
@@ -79,10 +79,6 @@ def _row(engine: str, family: str, found: Mapping[str, Any]) -> tuple[Entry, ...
 
 def _seconds(time: float) -> Entry:
     return Entry(number(time) if time else "", sort=plain(time))
-
-
-def _bad(count: int) -> Entry:
-    return Entry("", flag=number(count), sort=plain(count)) if count else Entry("0", sort=0.0)
 
 
 def _notes(part: TruthPart) -> list[str]:

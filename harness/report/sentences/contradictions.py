@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from harness.report.published import Recovered, Repetition, Row, recovered, repetitions
+from harness.report.published import PublishedRow, Recovered, Repetition, recovered, repetitions
 from harness.report.quantity import leaf_text, number
 
 
-def contradictions(rows: Sequence[Row], elsewhere: Sequence[Row]) -> list[Markup]:
+def contradictions(rows: Sequence[PublishedRow], elsewhere: Sequence[PublishedRow]) -> list[Markup]:
     """Bodies and frames that are not those printed, and rows that repeat others.
 
     Parameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from markupsafe import Markup
@@ -37,14 +38,14 @@ def _walls(arrangement: Arrangement) -> Markup:
 def _sentence(method: MethodName, shape: str, points: Sequence[MeasuredPoint]) -> Markup:
     """What it put to its library; empty where it may have put more than was counted."""
     counts = [(point.median("fcl_tests"), point.median("narrow_tests")) for point in points]
-    put = [(asked, tests) for asked, tests in counts if asked == asked]  # NaN where nothing was counted
+    put = [(asked, tests) for asked, tests in counts if not math.isnan(asked)]  # where it was counted
     if not put and method.stepped and method.shape != "sphere":
         return Markup()
     if not put:
         return Markup("<strong>{}</strong>{} is kernels of this program alone: it asks {} nothing.").format(
             method.label, shape, method.backend
         )
-    asked, tests = ([pair[k] for pair in put] for k in (0, 1))
+    asked, tests = zip(*put, strict=True)
     return Markup("<strong>{}</strong>{} put {} of {} pairs to {}; kernels of this program settled the others.").format(
         method.label, shape, _range(asked), _range(tests), method.backend
     )

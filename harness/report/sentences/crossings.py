@@ -12,7 +12,7 @@ from harness.measure.crossover import Crossover, Leader, crossover
 from harness.measure.resolution import Resolution
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import number
-from harness.report.ranking import told
+from harness.report.ranking import tell_apart
 from harness.report.series import Arrangement, Series
 from harness.report.words import is_noisy, metric_title, more_is_better
 
@@ -63,7 +63,7 @@ def _leaders(a: Series, b: Series, metric: str, resolution: Resolution) -> dict[
     for point, x in zip(a.points, a.x, strict=True):
         other = b.at(x)
         if other is not None and math.isfinite(x) and _has_cost(point, metric) and _has_cost(other, metric):
-            apart = told(point, other, metric, resolution) == "apart"
+            apart = tell_apart(point, other, metric, resolution) == "apart"
             found[float(x)] = ("a" if point.median(metric) < other.median(metric) else "b") if apart else ""
     return found
 

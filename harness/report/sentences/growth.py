@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from harness.measure.resolution import Outcome
+from harness.measure.resolution import Distinction
 from harness.measure.statistics import CONFIDENCE, FEWEST_FOR_INTERVAL, Summary
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import exponent_text, quantity
-from harness.report.ranking import Growth, change_p_value, times_worse, told
+from harness.report.ranking import Growth, change_p_value, tell_apart, times_worse
 from harness.report.sentences.ratio import ratio_text
 from harness.report.series import Arrangement
 from harness.report.words import leaf_label, metric_title, metric_unit, more_is_better
@@ -79,14 +79,14 @@ def change_sentences(arrangement: Arrangement) -> list[Markup]:
             quantity(last.median(metric), metric_unit(metric)),
         )
         how = ratio_text(ratio)
-        doubt = _DOUBTS[_outcome(last, first, metric, arrangement)]
+        doubt = _DOUBTS[_distinction(last, first, metric, arrangement)]
         found.append(text + Markup(": {}{}.").format(how, doubt))
     return found
 
 
-def _outcome(last: MeasuredPoint, first: MeasuredPoint, metric: str, arrangement: Arrangement) -> Outcome:
+def _distinction(last: MeasuredPoint, first: MeasuredPoint, metric: str, arrangement: Arrangement) -> Distinction:
     """Whether a change is told from none."""
-    outcome = told(last, first, metric, arrangement.resolution(metric))
-    if outcome != "uncontrolled":
-        return outcome
+    found = tell_apart(last, first, metric, arrangement.resolution(metric))
+    if found != "uncontrolled":
+        return found
     return "apart" if change_p_value(last, first, metric) <= arrangement.level else "same"

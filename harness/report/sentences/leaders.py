@@ -20,6 +20,9 @@ from harness.report.words import (
     scene_text,
 )
 
+# Up to this ratio, medians are about the same.
+_ALIKE = 1.1
+
 
 def leader_sentences(arrangement: Arrangement) -> list[Markup]:
     """A sentence for each scene on which methods can be ranked."""
@@ -44,7 +47,7 @@ def leader_sentences(arrangement: Arrangement) -> list[Markup]:
 def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: object, metric: str) -> Markup:
     best, tied = ranked[0], [entry for entry in ranked if entry.tied]
     where = Markup("For {}: ").format(_scene(arrangement, ranked, panel, x))
-    why_not = unranked(entry.told for entry in ranked)
+    why_not = unranked(entry.distinction for entry in ranked)
     if why_not:
         return where + _medians(ranked, metric) + Markup(": {}.").format(why_not)
     most = "highest" if more_is_better(metric) else "lowest"
@@ -72,10 +75,6 @@ def _lead(arrangement: Arrangement, ranked: Sequence[Ranked], panel: str, x: obj
         ]
         text += Markup("; ") + ahead + Markup(", ").join(parts)
     return text + Markup(".")
-
-
-# Up to this ratio, medians are about the same.
-_ALIKE = 1.1
 
 
 def _about(medians: Sequence[float], metric: str) -> Markup:

@@ -12,9 +12,13 @@ from harness.measure.statistics import NOISY_ABOVE
 from harness.report.point import BUSY_ABOVE, MeasuredPoint
 from harness.report.quantity import number, plural
 from harness.report.series import Arrangement
-from harness.report.words import metric_title
+from harness.report.words import capital, metric_title
 from harness.store.records import ExperimentRecord
 from harness.vocabulary import MethodName
+
+_EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)
+# Of several counts that change, these are told first.
+_FIRST = ("pair_hits", "missed_hits", "near_pairs")
 
 
 def warning_sentences(record: ExperimentRecord, arrangement: Arrangement) -> list[Markup]:
@@ -36,7 +40,7 @@ def _of_plans(points: Sequence[MeasuredPoint]) -> Iterator[Markup]:
     for text, warned in points_of.items():
         whole = len(warned) == len(points)
         whom = "every point" if whole else f"{number(len(warned))} of {plural(len(points), 'point')}"
-        yield Markup("<strong>{}</strong> ({}).").format(_capital(text.rstrip(".")), whom)
+        yield Markup("<strong>{}</strong> ({}).").format(capital(text.rstrip(".")), whom)
 
 
 def _of_correctness(points: Sequence[MeasuredPoint]) -> Iterator[Markup]:
@@ -109,9 +113,6 @@ def _of_measuring(record: ExperimentRecord, arrangement: Arrangement) -> Iterato
         yield Markup("Noisy: fewer than nine in ten medians are known to {}.").format(f"±{NOISY_ABOVE * 100:.0f} %")
 
 
-_EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)
-
-
 def _not_the_same_twice(points: Sequence[MeasuredPoint]) -> list[Markup]:
     """Methods whose runs of one motion count otherwise, a sentence each: every run begins with the same numbers."""
     changing: dict[str, list[MeasuredPoint]] = {}
@@ -120,7 +121,7 @@ def _not_the_same_twice(points: Sequence[MeasuredPoint]) -> list[Markup]:
             changing.setdefault(MethodName.of(point.parameters).label, []).append(point)
     sentences = []
     for method, where in changing.items():
-        name = next(name for name in (*_TOLD, *_EXACT) if len(where[0].values(name)) and np.ptp(where[0].values(name)))
+        name = next(name for name in (*_FIRST, *_EXACT) if len(where[0].values(name)) and np.ptp(where[0].values(name)))
         values = where[0].values(name)
         sentences.append(
             Markup(
@@ -128,11 +129,3 @@ def _not_the_same_twice(points: Sequence[MeasuredPoint]) -> list[Markup]:
             ).format(method, plural(len(where), "point"), metric_title(name), *map(number, (min(values), max(values))))
         )
     return sentences
-
-
-_TOLD = ("pair_hits", "missed_hits", "near_pairs")
-"""What is told of several counts that change."""
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

@@ -91,10 +91,11 @@ class Case:
         if rejected := [reason for status, reason in ended if status == "rejected"]:
             return CaseResult("refuses", _short(str(rejected[0])))
         claimed = list(self._judged(record.claims, mine))
-        for word, rows in (("fails", expected), ("degrades", claimed)):
+        judged: tuple[tuple[Word, list[tuple[str, str]]], ...] = ("fails", expected), ("degrades", claimed)
+        for word, rows in judged:
             false = [text for verdict, text in rows if verdict == "fails"]
             if false:
-                return CaseResult("fails" if word == "fails" else "degrades", "; ".join(dict.fromkeys(false)))
+                return CaseResult(word, "; ".join(dict.fromkeys(false)))
         held = [text for verdict, text in (*expected, *claimed) if verdict == "holds"]
         return CaseResult("survives", held[0] if held else "came to its end")
 

@@ -24,9 +24,10 @@ from typing import Any, Literal
 import numpy as np
 
 from harness.errors import InputError
-from harness.measure.metrics import DERIVED, METRICS
+from harness.measure.metrics import METRICS
 from harness.measure.noise import distinguishable, level, noise_floor, student
 from harness.measure.statistics import FEWEST_FOR_INTERVAL, Summary, summary
+from harness.report.point_labels import labels_of
 from harness.store.records import RunRecord, SweepRecord
 from harness.store.snapshot import Snapshot, measuring_sweeps, snapshot
 from harness.store.tables import sweeps
@@ -163,7 +164,7 @@ def difference_of(early: SweepRecord, late: SweepRecord, old: Snapshot, new: Sna
     floor = max(UNKNOWN_DRIFT if drifts is None else DRIFT, _floor(old), _floor(new))
     steady = {key: _without(found, drifts or {}) for key, found in ratios.items()}
     paces = _paces(steady, floor, math.log1p(UNKNOWN_DRIFT if drifts is None else DRIFT))
-    labels = _labels({key: theirs[key] for key in again})
+    labels = labels_of({key: (theirs[key][0].experiment, theirs[key][0].parameters) for key in again})
     points = [_point(labels[key], mine[key], theirs[key], summary(steady[key]), paces[key]) for key in again]
     points.sort(key=lambda point: (not point.changed, point.pace in ("same", "unknown"), -abs(_log(point.ratio))))
     counts = {pace: sum(point.pace == pace for point in points) for pace in ("slower", "faster", "same", "unknown")}
@@ -293,29 +294,6 @@ def _floor(results: Snapshot) -> float:
             first.append(run.metrics[CLOCK])
             second.append(control[CLOCK])
     return noise_floor(first, second) or 0.0
-
-
-def _labels(points: Mapping[str, Sequence[RunRecord]]) -> dict[str, str]:
-    """For each point the leaves that differ among those of its experiment."""
-    grouped: dict[str, list[str]] = defaultdict(list)
-    for key, runs in points.items():
-        grouped[runs[0].experiment].append(key)
-    labels = {}
-    for keys in grouped.values():
-        parameters = {key: points[key][0].parameters for key in keys}
-        leaves = [
-            leaf
-            for leaf in parameters[keys[0]]
-            if leaf not in DERIVED
-            and len({json.dumps(found.get(leaf), sort_keys=True) for found in parameters.values()}) > 1
-        ]
-        for key in keys:
-            labels[key] = ", ".join(f"{leaf} {_short(parameters[key].get(leaf))}" for leaf in leaves)
-    return labels
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else value if isinstance(value, str) else json.dumps(value)
 
 
 def _verdicts(old: Snapshot, new: Snapshot) -> list[VerdictDifference]:

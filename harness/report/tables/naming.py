@@ -6,7 +6,7 @@ from harness.report.point import MeasuredPoint
 from harness.report.quantity import leaf_text
 from harness.report.series import Arrangement, Series
 from harness.report.table import Column, Entry, plain
-from harness.report.words import leaf_label, metric_title
+from harness.report.words import capital, leaf_label, metric_title
 
 
 def place_of(arrangement: Arrangement, series: Series, x: object) -> str:
@@ -32,8 +32,7 @@ def panel_entry(arrangement: Arrangement, point: MeasuredPoint) -> list[Entry]:
 
 def heading(metric: str) -> str:
     """A metric as the heading of a column."""
-    title = metric_title(metric)
-    return f"{title[:1].upper()}{title[1:]}"
+    return capital(metric_title(metric))
 
 
 def medians_text(arrangement: Arrangement) -> str:

@@ -11,7 +11,7 @@ from harness.report.quantity import leaf_text, number, scale
 from harness.report.series import Arrangement
 from harness.report.table import Column, Entry, Table, measured, plain, words
 from harness.report.tables.naming import heading, medians_text, panel_column, panel_entry
-from harness.report.words import leaf_title, metric_unit
+from harness.report.words import capital, leaf_title, metric_unit
 
 # The homework's columns, in its order.
 _TESTS = (
@@ -28,7 +28,7 @@ _MOST_ROWS = 100
 def tests_table(arrangement: Arrangement) -> Table | None:
     """Tests and their times, as the homework tabulates them."""
     how = medians_text(arrangement)
-    note = f"{how[:1].upper()}{how[1:]}. Counts are exact. Times are CPU time."
+    note = f"{capital(how)}. Counts are exact. Times are CPU time."
     return _points_table(arrangement, "Tests and times", note, _TESTS)
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from harness.report.published import Recovered, Row, metrics_of
+from harness.report.published import PublishedRow, Recovered, metrics_of
 from harness.report.quantity import number, scale
 from harness.report.table import Column, Entry, Group, Table, counted, failure, plain, words
 from harness.report.words import metric_title, metric_unit
 
 
-def published_table(rows: Sequence[Row], source: str) -> Table:
+def published_table(rows: Sequence[PublishedRow], source: str) -> Table:
     """Each published number, ours, and ours over theirs."""
     metrics = metrics_of(rows)
     units = {

@@ -37,7 +37,7 @@ def _table(arrangement: Arrangement, metric: str) -> Table:
         ranks = [
             {entry.series.label: entry for entry in rank(lines, x, metric, resolution)} if ranked else {} for x in xs
         ]
-        why_not = [unranked(entry.told for entry in places.values()) for places in ranks]
+        why_not = [unranked(entry.distinction for entry in places.values()) for places in ranks]
         reasons |= dict.fromkeys(filter(None, why_not))
         ranks = [{} if reason else places for places, reason in zip(ranks, why_not, strict=True)]
         for series in lines:

@@ -22,12 +22,12 @@ document.querySelectorAll("form.finder").forEach(function (form) {
       if (distance < least) { least = distance; best = row; }
     });
     if (!best) { line("p", "Nothing of this kind was measured."); return; }
-    var text = function (column) { return best.cells[column].textContent; };
-    line("p", text(0)).className = "method";
-    line("p", [text(4), text(5), text(6)].filter(Boolean).join("; ") + ".");
-    line("pre", text(7)).tabIndex = 0;  // it scrolls where the page is narrow
+    var [method, atX, atY, , cost, next, sure, yaml] = Array.from(best.cells, function (cell) { return cell.textContent; });
+    line("p", method).className = "method";
+    line("p", [cost, next, sure].filter(Boolean).join("; ") + ".");
+    line("pre", yaml).tabIndex = 0;  // it scrolls where the page is narrow
     var exact = +best.dataset.x === x && +best.dataset.y === y;
-    line("p", (exact ? "Measured there: " : "Nearest measured point, nothing in between is guessed: ") + text(1) + ", " + text(2) + ".").className = "note";
+    line("p", (exact ? "Measured there: " : "Nearest measured point, nothing in between is guessed: ") + atX + ", " + atY + ".").className = "note";
   };
   form.hidden = false;
   form.addEventListener("input", find);

@@ -83,7 +83,8 @@ def _leaves(xs: Sequence[int], point: tuple[int, int]) -> dict[str, object]:
 
 
 def _row(name: str, xs: Sequence[int], point: tuple[int, int], repeat: int) -> dict[str, object]:
-    number = point[0] * len(xs) + point[1]
+    method, place = point
+    number = method * len(xs) + place
     head = {
         "experiment": name,
         "point": f"{name}-{number}",

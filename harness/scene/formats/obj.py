@@ -12,13 +12,15 @@ from array import array
 import numpy as np
 
 from harness.errors import InputError
-from harness.scene.formats.text import LARGEST, as_text, floats, gathered, rows, shown, whole
+from harness.scene.formats.text import LARGEST, as_text, floats, gathered, rows, shown, uncommented, whole
 from harness.scene.polygon_mesh import PolygonMesh
 
+# How such a file begins.
+BEGINS = rb"(?:#[^\r\n]*\s+){0,100}(?:(?:v|vn|vt|f)[ \t]+[-+.\d]|(?:mtllib|usemtl)[ \t])"
 CURVED = (b"curv", b"curv2", b"surf")
 OTHERS = (
     b"vt vn vp p l o g s mg usemtl mtllib maplib usemap cstype deg bmat step parm trim hole scrv sp end con bevel "
-    b"c_interp d_interp lod shadow_obj trace_obj ctech stech"
+    b"c_interp d_interp lod shadow_obj trace_obj ctech stech csh"
 ).split()
 # Lines of one kind without anything unusual, which are read together; as many as regular expressions bear.
 BLOCK = re.compile(
@@ -26,6 +28,7 @@ BLOCK = re.compile(
     rb"|(?P<faces>(?:f[ \t][-+/0-9 \t]*\n){1,1024})"
     rb"|(?P<others>(?:v[nt][ \t][^\n\\]*\n){1,1024})"
 )
+MARK = b"\xef\xbb\xbf"  # of the order of bytes
 FEW = 32  # fewer lines are read faster one by one
 TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
 
@@ -47,9 +50,12 @@ class _Reader:
     def __init__(self) -> None:
         self._coordinates, self._corners, self._lengths = array("d"), array("q"), array("q")
         self._vertex_lines, self._face_lines = array("q"), array("q")
-        self._keywords: dict[bytes, int] = {}  # others than v and f, with their first line
+        # others than v and f, in lower case, each with its first line and as it stands there
+        self._keywords: dict[bytes, tuple[int, bytes]] = {}
 
     def read(self, text: bytes) -> PolygonMesh:
+        if MARK in text:  # of one file behind another
+            text = text.replace(b"\n" + MARK, b"\n")
         if b"\xa0" in text:  # a space that does not break, in UTF-8 and in Latin-1
             text = text.replace(b"\xc2\xa0", b" ").replace(b"\xa0", b" ")
         place, number = 0, 1
@@ -65,6 +71,7 @@ class _Reader:
             place, number = end, number + count
         if not self._lengths:
             raise InputError(_no_faces(len(self._vertex_lines), self._keywords))
+        unknown = _unknown(self._keywords)
         return PolygonMesh(
             np.frombuffer(self._coordinates, np.float64).reshape(-1, 3),
             np.frombuffer(self._corners, np.int64),
@@ -72,6 +79,7 @@ class _Reader:
             base=1,
             vertex_line=self._vertex_lines.__getitem__,
             face_line=self._face_lines.__getitem__,
+            notes=(f"passed over, since OBJ has no such line: {unknown}",) if unknown else (),
         )
 
     def _block(self, block: re.Match[bytes], first: int, count: int) -> bool:
@@ -102,7 +110,7 @@ class _Reader:
 
     def _statement(self, statement: bytes, number: int) -> None:
         """Read one line, or several that are joined by backslashes."""
-        lines = [line.partition(b"#")[0].rstrip().removesuffix(b"\\") for line in statement.splitlines()]
+        lines = [uncommented(line).rstrip().removesuffix(b"\\") for line in statement.splitlines()]
         words = b" ".join(lines).split()
         keyword = words[0].lower() if words else b""
         if keyword == b"v":
@@ -111,7 +119,7 @@ class _Reader:
                 raise InputError(f"line {number}: a vertex has 3 coordinates, not {len(point)}")
             self._coordinates.extend(point)
             self._vertex_lines.append(number)
-        elif keyword == b"f":
+        elif keyword in (b"f", b"fo"):  # as faces with an outline were called once
             names = [word.partition(b"/")[0] for word in words[1:]]  # vertex/texture/normal
             self._corners.extend([self._corner(name, number) for name in names])
             self._lengths.append(len(names))
@@ -119,7 +127,7 @@ class _Reader:
         elif keyword == b"call":
             raise InputError(f"line {number}: a file that calls another one is not read")
         elif keyword:
-            self._keywords.setdefault(keyword, number)
+            self._keywords.setdefault(keyword, (number, words[0]))
 
     def _corner(self, name: bytes, line: int) -> int:
         """The vertex, counted from 0, that a face in a line names."""
@@ -141,15 +149,21 @@ def _end_of_statement(text: bytes, place: int) -> int:
         place = end
 
 
-def _no_faces(vertices: int, keywords: dict[bytes, int]) -> str:
+def _unknown(keywords: dict[bytes, tuple[int, bytes]]) -> str | None:
+    """The first line that no OBJ file has, and how it begins."""
+    for keyword, (line, word) in keywords.items():
+        if keyword not in OTHERS and keyword not in CURVED:
+            return f"line {line} begins with {shown(word)}"
+    return None
+
+
+def _no_faces(vertices: int, keywords: dict[bytes, tuple[int, bytes]]) -> str:
     """Why there is no face in a file."""
     for keyword in CURVED:
         if keyword in keywords:
-            return f"line {keywords[keyword]}: free-form curves and surfaces are not read, and there are no faces"
+            return f"line {keywords[keyword][0]}: free-form curves and surfaces are not read, and there are no faces"
     if vertices:
         others = ", lines or points" if {b"l", b"p"} & keywords.keys() else ""
         return f"the mesh is empty: it has no faces, only vertices{others}"
-    unknown = [keyword for keyword in keywords if keyword not in OTHERS]
-    if unknown:
-        return f"this is no OBJ file: line {keywords[unknown[0]]} begins with {shown(unknown[0])}"
-    return "the mesh is empty: it has no vertices and no faces"
+    unknown = _unknown(keywords)
+    return f"this is no OBJ file: {unknown}" if unknown else "the mesh is empty: it has no vertices and no faces"

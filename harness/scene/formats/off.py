@@ -12,8 +12,8 @@ from collections.abc import Callable
 import numpy as np
 
 from harness.errors import InputError
-from harness.scene.formats.text import LARGEST, as_text, floats, gathered, rows, shown, whole
-from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh
+from harness.scene.formats.text import LARGEST, as_text, floats, gathered, rows, shown, uncommented, whole
+from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, beyond
 
 # How such a file begins.
 BEGINS = rb"(?:ST)?C?N?OFF\s"
@@ -59,12 +59,14 @@ class _Reader:
             )
         self._elements("vertex", vertices, self._vertex_block, self._vertex)
         self._elements("face", faces, self._face_block, self._face)
+        more = sum(bool(uncommented(line).strip()) for line in self._text[self._place :].splitlines())
         return PolygonMesh(
             np.frombuffer(self._coordinates, np.float64).reshape(-1, 3),
             np.frombuffer(self._corners, np.int64),
             np.frombuffer(self._lengths, np.int64),
             vertex_line=self._vertex_lines.__getitem__,
             face_line=self._face_lines.__getitem__,
+            notes=beyond(more, "line", faces) if more else (),
         )
 
     def _elements(
@@ -94,7 +96,7 @@ class _Reader:
         """The words of the next line that has any."""
         while self._place < len(self._text):
             end = self._text.index(b"\n", self._place)
-            words = self._text[self._place : end].partition(b"#")[0].split()
+            words = uncommented(self._text[self._place : end]).split()
             self._place, self._line = end + 1, self._line + 1
             if words:
                 return words

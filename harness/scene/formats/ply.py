@@ -13,7 +13,7 @@ from harness.errors import InputError
 from harness.scene.formats.ply_header import Element, Header, read_header
 from harness.scene.formats.ply_rows import BinaryRows, Column, Rows, TextRows
 from harness.scene.formats.text import LARGEST
-from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh
+from harness.scene.polygon_mesh import MAX_FACES, MAX_VERTICES, PolygonMesh, beyond
 
 # How such a file begins.
 BEGINS = rb"ply[ \t]*[\r\n]"
@@ -45,12 +45,14 @@ def read(content: bytes) -> PolygonMesh:
     vertices, (faces,) = found["vertex"], found["face"]
     with np.errstate(over="ignore"):  # what is too large for the type that the header names is infinite, and refused
         points = [rows.values(column).astype(column.kind).astype(np.float64) for column in vertices]
+    more, unit = rows.left
     return PolygonMesh(
         np.column_stack(points),
         _vertex_numbers(rows, faces),
         faces.lengths,
         vertex_line=rows.line_of(vertices[0]),
         face_line=rows.line_of(faces),
+        notes=beyond(more, unit, len(faces.lengths)) if more and header.elements[-1].name == "face" else (),
     )
 
 

@@ -57,10 +57,14 @@ class Rows(ABC):
         """Tells the line of the file in which a row has its number or list; None for a binary file."""
         return None
 
+    def ended(self, where: str) -> InputError:
+        """What to say of a file that ends in a row, or where that row ends before its last number."""
+        return InputError(f"the file ends in {where}")
+
     @property
-    def end(self) -> str:
-        """Where the file ends, as a message begins; nothing for a binary file."""
-        return ""
+    @abstractmethod
+    def left(self) -> tuple[int, str]:
+        """How much of the file follows the rows that were asked for, and its unit."""
 
     def columns(self, element: Element, names: tuple[str, ...]) -> list[Column]:
         """Some of an element's properties; with that, its rows are passed.
@@ -120,8 +124,7 @@ class Rows(ABC):
             try:
                 place = self._row(place, steps)
             except IndexError:
-                where = f"the file ends in {element.name} {row + 1} of {element.rows}"
-                raise InputError(f"{self.end}{where}") from None
+                raise self.ended(f"{element.name} {row + 1} of {element.rows}") from None
         self._place = place
         kinds = {wanted.name: wanted.kind for wanted in element.properties}
         return [Column(kinds[name], *np.array(found[name], np.int64)) for name in names]
@@ -168,6 +171,10 @@ class BinaryRows(Rows):
             raise InputError(f"a list of {length} numbers stands at byte {self._begin + place}")
         return int(length)
 
+    @property
+    def left(self) -> tuple[int, str]:
+        return self._size - self._place, "byte"
+
     def numbers(self, places: NDArray[np.int64], kind: str) -> NDArray[np.generic]:
         cells = self._bytes[places[:, None] + np.arange(int(kind[1]))]
         numbers: NDArray[np.generic] = cells.view(self._order + kind).reshape(-1)
@@ -196,6 +203,10 @@ class TextRows(Rows):
     def line_of(self, column: Column) -> Callable[[int], int] | None:
         return lambda row: self._numbers.line(int(column.starts[row]))
 
+    def ended(self, where: str) -> InputError:
+        self._numbers.require_end()
+        return InputError(f"line {self._numbers.line(self._size)}: the file ends in {where}")
+
     @property
-    def end(self) -> str:
-        return f"line {self._numbers.line(self._size)}: "
+    def left(self) -> tuple[int, str]:
+        return self._size - self._place + self._numbers.follow, "word"

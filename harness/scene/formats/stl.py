@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from harness.errors import InputError
 from harness.scene.formats.text import as_text, floats, shown, wide_encoding
-from harness.scene.polygon_mesh import MAX_FACES, PolygonMesh
+from harness.scene.polygon_mesh import MAX_FACES, PolygonMesh, beyond
 
 # How such a file begins.
 BEGINS = rb"(?is)solid\b.{0,2000}\bfacet\s+normal\b"
@@ -53,6 +53,12 @@ def read(content: bytes) -> PolygonMesh:
     raise InputError(f"the file ends in face {(len(content) - HEADER) // FACE.itemsize + 1} of {announced}")
 
 
+def is_binary(content: bytes) -> bool:
+    """Whether a file is exactly as long as binary STL of the number of faces that it announces."""
+    announced = int.from_bytes(content[80:HEADER], "little")
+    return announced > 0 and len(content) == HEADER + announced * FACE.itemsize
+
+
 def _read_binary(content: bytes, count: int) -> PolygonMesh:
     if count == 0:
         more = len(content) - HEADER
@@ -61,7 +67,9 @@ def _read_binary(content: bytes, count: int) -> PolygonMesh:
         raise InputError(f"its header announces {count} faces; at most {MAX_FACES} are read")
     faces = np.frombuffer(content, FACE, count, HEADER)
     vertices = faces["corners"].reshape(-1, 3).astype(np.float64)
-    return PolygonMesh(vertices, np.arange(3 * count), np.full(count, 3))
+    more = len(content) - HEADER - count * FACE.itemsize
+    notes = beyond(more, "byte", count) if more else ()
+    return PolygonMesh(vertices, np.arange(3 * count), np.full(count, 3), notes=notes)
 
 
 def _read_regular(text: bytes) -> PolygonMesh | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,6 +14,8 @@ from harness.errors import InputError
 MARKS = {b"\xff\xfe\0\0": "UTF-32", b"\0\0\xfe\xff": "UTF-32", b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16"}
 # Of every second one of a file's first bytes, how many are zero in UTF-16: all, where its letters are those of ASCII.
 WIDE = 0.6
+# What programs built by an old Microsoft compiler write for what is no finite number; its # begins no comment.
+NOT_FINITE = re.compile(rb"\b\d\.#(?:QNAN|SNAN|IND|INF)\w*")
 LARGEST = 2.0**53  # up to which a float tells whole numbers apart
 
 
@@ -42,6 +45,13 @@ def as_text(content: bytes) -> bytes:
     if b"\r" in content:
         content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return content
+
+
+def uncommented(line: bytes) -> bytes:
+    """A line without what follows `#`."""
+    if b"#" not in line:
+        return line
+    return NOT_FINITE.sub(b"nan", line).partition(b"#")[0]
 
 
 def floats(words: Sequence[bytes], line: int) -> list[float]:
@@ -101,31 +111,39 @@ def gathered(starts: NDArray[np.int64], lengths: NDArray[np.int64], step: int = 
 
 
 class Numbers:
-    """All numbers of a text that holds nothing else, separated by any white space.
+    """The numbers at the beginning of a text, separated by any white space.
 
     Parameters
     ----------
     text : the text
     before : how many lines of the file stand before it
 
-    Raises
-    ------
-    InputError
-        If a word is no number; with its line.
+    Attributes
+    ----------
+    values : up to the first word that is no number
+    follow : words from that one on
     """
 
     values: NDArray[np.float64]
+    follow: int
 
     def __init__(self, text: bytes, before: int) -> None:
         self._text, self._before = text, before
         words = text.split()
+        self.follow, self._wrong = 0, b""
         try:
             if b"_" in text:
                 raise ValueError
             self.values = np.fromiter(map(float, words), np.float64, len(words))
         except ValueError:
             wrong = next(place for place, word in enumerate(words) if not is_number(word))
-            raise InputError(f"line {self.line(wrong)}: {shown(words[wrong])} is not a number") from None
+            self.values = np.fromiter(map(float, words[:wrong]), np.float64, wrong)
+            self.follow, self._wrong = len(words) - wrong, words[wrong]
+
+    def require_end(self) -> None:
+        """Refuse a word that is no number, since more numbers are needed; with its line."""
+        if self.follow:
+            raise InputError(f"line {self.line(len(self.values))}: {shown(self._wrong)} is not a number")
 
     def line(self, place: int) -> int:
         """The line of the file in which a number stands; the last one for a place beyond the end."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from harness.report.atlas import AtlasPart, AtlasResults
 from harness.report.drawing.rates import draw_rates
-from harness.report.figure import Figure, FigureSource, Key
+from harness.report.figure import Figure, FigureSource, Key, name_of
 from harness.report.quantity import number
 
 WITHIN, BEYOND = 0, 2
@@ -19,7 +18,8 @@ def _figures(atlas: AtlasResults) -> Iterator[Figure]:
 
 
 def matrix_figure(part: AtlasPart) -> Figure:
-    name = re.sub(r"[^\w-]+", "-", "-".join(filter(None, ("atlas", part.experiment, part.title))))
+    """The matrix of one shape of one mesh."""
+    name = name_of("atlas", part.experiment, part.title)
     beyond = [
         f"{engine} in {number(cell['beyond'])} of {number(cell['verdicts'])} ({family})"
         for (engine, family), cell in sorted(part.cells.items())

@@ -14,7 +14,7 @@ from harness.report.figure import Figure, FigureSource, Key
 from harness.report.lines import axis_title, in_words, interval_text, spans_logarithms
 from harness.report.quantity import Scale, leaf_text, scale
 from harness.report.series import Arrangement, Series
-from harness.report.words import is_noisy, leaf_label, leaf_title, metric_title, metric_unit
+from harness.report.words import capital, is_noisy, leaf_label, leaf_title, metric_title, metric_unit
 
 _MOST_PANELS = 8
 
@@ -49,7 +49,7 @@ def _figure(arrangement: Arrangement, metrics: tuple[str, ...]) -> Figure:
         panels.append(_panel(arrangement, name, metrics, lines, unit))
     logarithmic = all(spans_logarithms(panel) for panel in panels) and not panels[0].categories
     panels = [replace(panel, logarithmic=logarithmic) for panel in panels]
-    title = _capital(" and ".join(map(metric_title, metrics)))
+    title = capital(" and ".join(map(metric_title, metrics)))
     assert arrangement.x is not None
     over = leaf_title(arrangement.x)
     kind = "Log-log plot" if logarithmic else "Plot"
@@ -121,10 +121,6 @@ def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool
     elif not arrangement.numeric:
         sentences.append("The dotted line only guides the eye.")
     return " ".join(sentences)
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 SOURCE = FigureSource(_figures, place=10)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from harness.report.drawing.rates import draw_rates
-from harness.report.figure import Figure, FigureSource, Key
+from harness.report.figure import Figure, FigureSource, Key, name_of
 from harness.report.quantity import number
 from harness.report.truth import ALL, OTHERS, UNSAFE, TruthPart, TruthResults
 
@@ -30,7 +29,7 @@ def _figure(part: TruthPart) -> Figure:
         for engine in part.engines
         if (found := part.count(engine, ALL)) is not None
     ]
-    name = re.sub(r"[^\w-]+", "-", f"truth-{part.name}")
+    name = name_of("truth", part.name)
     return Figure(
         name,
         f"Answers that are not right, {part.name}",
