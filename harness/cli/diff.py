@@ -139,6 +139,13 @@ def _drift_text(drift: float) -> str:
     return f"more than a machine drifts; {MOST_DRIFT:.3g} times is taken out of every ratio"
 
 
+def _change(before: float, after: float) -> str:
+    """Two numbers in as few digits as tell them apart; counts in all of theirs."""
+    few = f"{before:.6g}", f"{after:.6g}"
+    whole = float(before).is_integer() and float(after).is_integer()
+    return f"{before:.15g} to {after:.15g}" if whole or few[0] == few[1] else " to ".join(few)
+
+
 def _told(point: PointDifference, *, pace: bool = True) -> list[str]:
     """What is different about a point; nothing where it is the same."""
     told = []
@@ -147,7 +154,7 @@ def _told(point: PointDifference, *, pace: bool = True) -> list[str]:
             f"{point.pace}, {point.before:.3g} s to {point.after:.3g} s, {point.ratio.median:.3g} times "
             f"[{point.ratio.low:.3g}, {point.ratio.high:.3g}]{'' if point.ratio.coverage else ' (range)'}"
         )
-    told += [f"{name} {before:.15g} to {after:.15g}" for name, (before, after) in point.counters.items()]
+    told += [f"{name} {_change(before, after)}" for name, (before, after) in point.counters.items()]
     if point.statuses is not None:
         told.append(f"{point.statuses[0]} before, {point.statuses[1]} now")
     return told

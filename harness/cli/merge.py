@@ -22,7 +22,11 @@ def run(arguments: argparse.Namespace) -> int:
     merged = merge(arguments.into, arguments.others)
     (sweeps, all_sweeps), (runs, all_runs), (_, all_machines) = merged.sweeps, merged.runs, merged.machines
     print(
-        f"{arguments.into}: {all_sweeps - sweeps} sweeps and {all_runs - runs} runs added; "
-        f"now {all_sweeps} sweeps and {all_runs} runs of {all_machines} machines"
+        f"{arguments.into}: {_counted(all_sweeps - sweeps, 'sweep')} and {_counted(all_runs - runs, 'run')} added; "
+        f"now {_counted(all_sweeps, 'sweep')} and {_counted(all_runs, 'run')} of {_counted(all_machines, 'machine')}"
     )
     return 0
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun if count == 1 else noun + 's'}"

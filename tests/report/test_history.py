@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from harness.cli.diff import _change
 from harness.cli.main import main
 from harness.errors import InputError
 from harness.report.history.history import history
@@ -105,3 +106,9 @@ def test_a_difference_as_markdown_has_a_row_for_what_changed(swept, capsys):
     said = capsys.readouterr().out
     assert said.startswith("**Sweep 4** (`commit3`) against **sweep 5** (`commit4`): 1 slower, 0 faster, 10 changed")
     assert said.count("| first (count ") == 11
+
+
+def test_a_share_is_told_in_the_digits_that_differ_and_a_count_in_all():
+    assert _change(0.0, 6 / 70) == "0 to 0.0857143"
+    assert _change(0.1, 0.1 + 1e-12) == "0.1 to 0.100000000001"
+    assert _change(1234567.0, 1234568.0) == "1234567 to 1234568"

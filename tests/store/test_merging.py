@@ -5,6 +5,7 @@ import sqlite3
 
 import pytest
 
+from harness.cli.main import main
 from harness.errors import InputError
 from harness.store.database import Database
 from harness.store.merging import merge
@@ -117,3 +118,9 @@ def test_a_file_is_not_added_to_itself_and_what_is_no_results_is_refused(two, tm
     with pytest.raises(InputError):
         merge(one, [tmp_path / "text.db"])
     assert content(one) == before
+
+
+def test_the_command_says_what_was_added(two, capsys):
+    first, second = two
+    assert main(["merge", str(first), str(second)]) == 0
+    assert "1 sweep and " in capsys.readouterr().out

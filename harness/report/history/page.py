@@ -82,7 +82,7 @@ def points_table(machine: MachineHistory, metric: str) -> Table | None:
     )
     note = f"{metric_title(metric).capitalize()}, CPU {unit.symbol}, medians with half their interval."
     if len(points) > _MOST_ROWS:
-        note += f" The first {_MOST_ROWS} of {plural(len(points), 'point')}; `harness history --all` has all."
+        note += f" The first {_MOST_ROWS} of {plural(len(points), 'point')}; all are in “harness history --all”."
     columns = (
         Column("Experiment", numeric=False), Column("Point", numeric=False),
         *(Column(f"sweep {sweep.id}") for sweep in shown),
