@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.arrays import Floats
 from harness.kernel import inner, kernel
 from harness.prefetch import prefetch
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Indices = NDArray[np.int32]
 Bits = NDArray[np.uint64]

@@ -8,12 +8,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from harness.arrays import Floats
 from harness.kernel import kernel
 from harness.scene.placed_spheres import Placed, is_free, none_placed, not_taken, place_of, put
-
-Floats = NDArray[np.float64]
 
 # Up to so many spheres, and up to this packing, are placed without a kernel, which would take longer to load.
 FEW, LOOSE = 1000, 0.3
