@@ -142,11 +142,11 @@ def _ask(arguments: argparse.Namespace) -> int:
 
     from harness.errors import InputError
     from harness.truth.answer_table import document, documents, table
-    from harness.truth.answerers import questions
+    from harness.truth.answerers import asked_engines
     from harness.truth.ask import ask, chosen
     from harness.truth.folder import read_set
 
-    asked_of = questions(arguments.backends, arguments.dt)
+    asked_of = asked_engines(arguments.backends, arguments.dt)
     if arguments.db is not None:
         _open(arguments.db).close()  # before the work, not after it
     given = read_set(Path(arguments.folder))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from harness.report.lines import interval_text
-from harness.report.map.cells import Cell, MethodMap, method_of, time_accuracy
+from harness.report.map.cells import MapCell, MethodMap, method_of, time_accuracy
 from harness.report.quantity import leaf_text, number, scale
 from harness.report.ranking import Ranked
 from harness.report.styles import style_of
@@ -27,7 +27,7 @@ class Answer:
     """
 
     where: MethodMap
-    cell: Cell
+    cell: MapCell
     x: str
     y: str
     method: str = "nobody"
@@ -58,7 +58,7 @@ def place_text(leaf: str, value: Any) -> str:
     return f"{leaf} {leaf_text(value)}"
 
 
-def _answer(made: MethodMap, cell: Cell) -> Answer:
+def _answer(made: MethodMap, cell: MapCell) -> Answer:
     x, y = place_text(made.x_leaf, cell.x), place_text(made.y_leaf, cell.y)
     best = cell.best
     if best is None:
@@ -91,7 +91,7 @@ def _cost(made: MethodMap, best: Ranked) -> str:
     return text
 
 
-def _sure(cell: Cell) -> str:
+def _sure(cell: MapCell) -> str:
     if cell.doubt:
         return f"in doubt: {cell.doubt}"
     if len(cell.ranked) == 1:
@@ -100,7 +100,7 @@ def _sure(cell: Cell) -> str:
     return f"told apart from {('the other one', 'both others')[others - 1] if others < 3 else f'all {others} others'}"
 
 
-def _second(cell: Cell) -> str:
+def _second(cell: MapCell) -> str:
     second = cell.runner_up
     if second is None:
         return ""
