@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import lzma
 import math
 import tokenize
 import zipfile
@@ -55,7 +56,8 @@ def read_poses(path: Path) -> RecordedPoses:
             f"{path.name}: times must grow; time[{frame + 1}] is {time[frame + 1]:g} after {time[frame]:g}, "
             f"and must be {_SHORTEST:g} s later at least"
         )
-    lengths = np.linalg.norm(quaternions, axis=2)
+    with np.errstate(over="ignore"):  # an infinite length is refused as any other
+        lengths = np.linalg.norm(quaternions, axis=2)
     if (np.abs(lengths - 1.0) > _OFF).any():
         worst, body = np.unravel_index(int(np.argmax(np.abs(lengths - 1.0))), lengths.shape)
         length = lengths[worst, body]
@@ -78,7 +80,7 @@ def _arrays(path: Path) -> dict[str, NDArray[np.generic]]:
             found = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
             lacking = [name for name in _SHAPES if name not in found]
             if lacking:
-                has = ", ".join(found) or "nothing"
+                has = _printable(", ".join(list(found)[:10])) or "nothing"
                 raise InputError(
                     f"{path.name}: there is no array {lacking[0]} {_SHAPES[lacking[0]]} in it; it has {has}"
                 )
@@ -89,8 +91,14 @@ def _arrays(path: Path) -> dict[str, NDArray[np.generic]]:
             return {name: _array(path, name, archive, found[name]) for name in _SHAPES}
     except RuntimeError as error:  # what zipfile says of a member with a password
         raise InputError(f"{path.name}: it is encrypted; write it without a password") from error
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError) as error:
-        raise InputError(f"{path.name}: it is damaged or cut short: {error}") from error
+    except OSError as error:
+        raise InputError(f"{path.name}: it cannot be read: {error.strerror or 'damaged or cut short'}") from error
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, ValueError) as error:
+        raise InputError(f"{path.name}: it is damaged or cut short") from error
+
+
+def _printable(text: str) -> str:
+    return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
 
 
 def _array(path: Path, name: str, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> NDArray[np.generic]:
@@ -127,7 +135,8 @@ def _header(path: Path, name: str, file: Any) -> tuple[tuple[int, ...], bool, np
 def _real(path: Path, name: str, array: NDArray[np.generic]) -> NDArray[np.float64]:
     if array.dtype.kind not in "fiu":
         raise InputError(f"{path.name}: {name} must hold real numbers, not {array.dtype}")
-    return np.ascontiguousarray(array, np.float64)
+    with np.errstate(over="ignore"):  # what a longer number has beyond a float is infinite, and refused
+        return np.ascontiguousarray(array, np.float64)
 
 
 def _require_shapes(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, get_args
@@ -12,6 +13,8 @@ import numpy as np
 
 from harness.arrays import Floats
 from harness.errors import InputError, Problem
+from harness.experiment.messages import printable, shown
+from harness.scene.formats import obj
 from harness.scene.mesh import Surface
 from harness.truth.cases import Cases
 from harness.truth.flights import Flights
@@ -26,6 +29,8 @@ COLUMNS = (
     *(f"{name}_{body}" for body in "ab" for name in ("mesh", "size", *MOTION)),
     *("window", "lower", "upper", "verdict"),
 )
+# m, m/s, rad/s and s, as for the numbers of an experiment: squares of what lies beyond overflow or underflow.
+LARGEST, SMALLEST = 1e30, 1e-30
 NEVER, TOUCHES = "never", "touches"
 
 
@@ -59,10 +64,16 @@ def read_set(folder: Path) -> TruthSet:
     except OSError as error:
         why = f"the cases cannot be read: {error.strerror}; `harness truth make` writes such a folder"
         raise InputError([Problem(why, str(path))]) from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError([Problem(f"the cases cannot be read: {error}", str(path))]) from None
+    except UnicodeDecodeError:
+        raise InputError([Problem("the cases cannot be read: this is not UTF-8 text", str(path))]) from None
+    except csv.Error:
+        raise InputError(
+            [Problem("the cases cannot be read: this is no CSV, or a value is too long", str(path))]
+        ) from None
     if not rows or tuple(rows[0]) != COLUMNS:
         raise InputError([Problem(f"the first line must name the columns {', '.join(COLUMNS)}", str(path), 1)])
+    if len(rows) == 1:
+        raise InputError([Problem("there are no cases behind the first line", str(path), 1)])
     problems = [
         Problem(message, str(path), line)
         for line, row in enumerate(rows[1:], 2)
@@ -131,14 +142,29 @@ def read_obj(path: Path) -> Surface:
         If it is no such file.
     """
     try:
-        words = [line.split() for line in path.read_text(encoding="ascii").splitlines()]
-        vertices = np.array([[float(part) for part in row[1:]] for row in words if row[:1] == ["v"]]).reshape(-1, 3)
-        faces = np.array([[int(part) - 1 for part in row[1:]] for row in words if row[:1] == ["f"]]).reshape(-1, 3)
-    except (OSError, ValueError) as error:
-        raise InputError([Problem(f"the mesh cannot be read: {error}", str(path))]) from None
-    if not len(faces) or faces.min() < 0 or faces.max() >= len(vertices) or not np.isfinite(vertices).all():
-        raise InputError([Problem("the mesh has no faces, or names vertices that it does not have", str(path))])
+        found = obj.read(path.read_bytes())
+    except OSError as error:
+        raise InputError([Problem(f"the mesh cannot be read: {error.strerror}", str(path))]) from None
+    except InputError as error:
+        raise InputError([Problem(str(error), str(path))]) from None
+    if (found.lengths != 3).any():
+        raise InputError([Problem("the mesh has a face that is no triangle", str(path))])
+    vertices, faces = found.vertices, found.corners.reshape(-1, 3)
+    if faces.min() < 0 or faces.max() >= len(vertices) or not np.isfinite(vertices).all():
+        raise InputError([Problem("the mesh names vertices that it does not have, or that are not finite", str(path))])
+    if np.abs(vertices).max() > LARGEST:
+        raise InputError([Problem(f"the mesh has coordinates beyond {LARGEST:g}", str(path))])
     return Surface(vertices, faces.astype(np.int32))
+
+
+def _is_mesh(folder: Path, name: str) -> bool:
+    """Whether a folder has a mesh of this name, which leads to no other folder."""
+    if not name.isprintable() or Path(name).name != name:
+        return False
+    try:
+        return (folder / MESHES / f"{name}.obj").is_file()
+    except OSError:  # a name too long
+        return False
 
 
 def _wrong(row: Sequence[str], folder: Path) -> str | None:
@@ -147,12 +173,10 @@ def _wrong(row: Sequence[str], folder: Path) -> str | None:
         return f"has {len(row)} values; there are {len(COLUMNS)} columns"
     named = dict(zip(COLUMNS, row, strict=True))
     if named["shape"] not in get_args(Shape):
-        return f"shape must be {', '.join(get_args(Shape))}, not {named['shape']!r}"
+        return f"shape must be {', '.join(get_args(Shape))}, not {shown(named['shape'])}"
     for name in ("mesh_a", "mesh_b"):
-        if named["shape"] != "sphere" and not (
-            named[name].isprintable() and (folder / MESHES / f"{named[name]}.obj").is_file()
-        ):
-            return f"{name}: there is no {MESHES}/{named[name]}.obj"
+        if (named["shape"] != "sphere" or named[name]) and not _is_mesh(folder, named[name]):
+            return f"{name}: there is no {MESHES}/{printable(named[name])}.obj"
     if named["verdict"] not in (NEVER, TOUCHES) or (named["verdict"] == NEVER) != (named["upper"] == ""):
         return f"verdict must be {TOUCHES}, or {NEVER} with no upper bound"
     for name in COLUMNS:
@@ -161,11 +185,14 @@ def _wrong(row: Sequence[str], folder: Path) -> str | None:
         try:
             number = float(named[name])
         except ValueError:
-            return f"{name} is no number: {named[name]!r}"
+            return f"{name} is no number: {shown(named[name])}"
         if not np.isfinite(number) or (name.startswith("size") and number <= 0.0):
-            return f"{name} must be finite, and a size above 0, not {named[name]}"
-    if any(all(float(named[f"{part}_{body}"]) == 0.0 for part in ("qw", "qx", "qy", "qz")) for body in "ab"):
-        return "a quaternion is zero, which turns into no direction"
+            return f"{name} must be finite, and a size above 0, not {printable(named[name])}"
+        if abs(number) > LARGEST or (name.startswith("size") and number < SMALLEST):
+            return f"{name} must be within {LARGEST:g}, and a size at least {SMALLEST:g}, not {number:g}"
+    for body in "ab":
+        if math.hypot(*(float(named[f"{part}_{body}"]) for part in ("qw", "qx", "qy", "qz"))) < SMALLEST:
+            return "a quaternion is zero, which turns into no direction"
     return None
 
 

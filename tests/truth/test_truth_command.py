@@ -86,14 +86,40 @@ def test_a_body_that_starts_elsewhere_or_a_touch_said_to_be_none_is_refused(made
     ("column", "value", "message"),
     [
         ("size_a", "0", "size_a must be finite, and a size above 0, not 0"),
-        ("x_a", "here", "x_a is no number: 'here'"),
-        ("shape", "cloud", "shape must be sphere, hull, mesh, not 'cloud'"),
+        ("x_a", "here", 'x_a is no number: "here"'),
+        ("shape", "cloud", 'shape must be sphere, hull, mesh, not "cloud"'),
+        ("x_a", "-1e31", "x_a must be within 1e+30, and a size at least 1e-30, not -1e+31"),
+        ("size_a", "1e-320", "size_a must be within 1e+30, and a size at least 1e-30, not 9.99989e-321"),
+        ("mesh_a", "../meshes/cube", "mesh_a: there is no meshes/../meshes/cube.obj"),
+        ("mesh_b", "m" * 300, f"mesh_b: there is no meshes/{'m' * 60}….obj"),
         ("verdict", "maybe", "verdict must be touches, or never with no upper bound"),
     ],
 )
 def test_a_table_that_makes_no_sense_is_an_error_at_its_line(made, tmp_path, capsys, column, value, message):
     assert main(["truth", "check", str(copy_with(made, tmp_path / "odd", {(2, column): value}))]) == 2
     assert capsys.readouterr().err.strip() == f"{tmp_path / 'odd' / CASES}:3: {message}"
+
+
+def test_a_mesh_that_makes_no_sense_is_refused_with_its_line(made, tmp_path, capsys):
+    folder = copy_with(made, tmp_path / "odd", {})
+    (folder / "meshes").unlink()
+    (folder / "meshes").mkdir()
+    mesh = next((made / "meshes").iterdir())
+    lines = mesh.read_text().splitlines()
+    wrongs = {
+        "v 0 x 0": 'line 1: "x" is not a number',
+        "f 1 2 3 4": "a face that is no triangle",
+        "v 1e31 0 0": "coordinates beyond 1e+30",
+        "f 1 2 999": "names vertices that it does not",
+    }
+    for line, reason in wrongs.items():
+        (folder / "meshes" / mesh.name).write_text("\n".join([line, *lines]))
+        assert main(["truth", "check", str(folder)]) == 2
+        assert reason in capsys.readouterr().err
+    rows = rows_of(made)
+    (folder / CASES).write_text(",".join(rows[0]) + "\n")
+    assert main(["truth", "check", str(folder)]) == 2
+    assert capsys.readouterr().err.strip().endswith(":1: there are no cases behind the first line")
 
 
 @pytest.mark.parametrize("folder", [None, ROOT / "results" / "published" / "truth"])
