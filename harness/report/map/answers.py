@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from harness.report.lines import interval_text
+from harness.report.lines import median_text
 from harness.report.map.cells import MapCell, MethodMap, method_of, time_accuracy
 from harness.report.quantity import leaf_text, number, scale
 from harness.report.ranking import Ranked
@@ -84,7 +84,7 @@ def _cost(made: MethodMap, best: Ranked) -> str:
     if found is None:
         return ""
     unit = scale([found.median], metric_unit(made.metric))
-    text = f"{metric_title(made.metric)} {interval_text(found, unit)}"
+    text = f"{metric_title(made.metric)} {median_text(found, unit)}"
     duration = best.point.parameters.get("duration")
     if made.metric == "run_seconds" and isinstance(duration, int | float):
         text += f", for {leaf_text(duration)} s of motion"
