@@ -14,6 +14,7 @@ import numpy as np
 
 from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
+from harness.errors import InputError
 from harness.kernel import kernel
 from harness.motion.kinematics import Trajectory
 from harness.narrowphase.spheres import passage
@@ -24,6 +25,11 @@ from harness.scene.box import Box
 
 # Straight pieces of all pairs together up to which every pair is searched over the whole duration (about a second).
 FEW_PIECES = 5e6
+# Beyond this no contact is searched for: it would take hours, and soon no float could tell the times of folds apart.
+MOST_FOLDS = 1e10
+# A window costs as much as so many pieces of pairs, even if no pair is near within it.
+PIECES_A_WINDOW = 2000
+MOST_WINDOWS = 1e8
 # Ends of two pieces of one encounter that are no further apart, in ulps of the duration, are one moment.
 SAME_MOMENT = 64.0
 
@@ -65,6 +71,11 @@ def sphere_contacts(
     -------
     Contacts
         Of spheres: each encounter is a contact.
+
+    Raises
+    ------
+    InputError
+        If the walls reflect bodies so often that contacts cannot be searched for.
     """
     paths, radii = folded_paths(bodies, box), bodies.radii * (1.0 + margin)
     cuts = np.linspace(0.0, duration, (windows or _windows(bodies, paths.inner_half, duration)) + 1)
@@ -88,9 +99,15 @@ def _windows(bodies: Bodies, inner_half: Floats, duration: float) -> int:
     with np.errstate(divide="ignore", invalid="ignore"):
         folds = np.nan_to_num(np.abs(bodies.velocities) * duration / (2.0 * inner_half), posinf=0.0).clip(0.0)
     pieces = (len(bodies) - 1) * (len(bodies) / 2 + folds.sum())
+    if folds.sum() > MOST_FOLDS:
+        raise InputError(
+            f"walls reflect the bodies {folds.sum():.1g} times, of which the reference follows {MOST_FOLDS:.0g} at the "
+            "most: take a shorter duration, slower bodies or a larger box"
+        )
     if pieces <= FEW_PIECES:
         return 1
-    return max(1, int(np.ceil(np.median(speeds) * duration / bodies.sizes.mean())))
+    wanted = np.ceil(np.median(speeds) * duration / bodies.sizes.mean())
+    return int(min(max(1.0, wanted), pieces / PIECES_A_WINDOW, MOST_WINDOWS))
 
 
 class _Window(NamedTuple):

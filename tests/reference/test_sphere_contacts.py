@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from harness.errors import InputError
 from harness.motion.kinematics import Trajectory
 from harness.reference.sphere_contacts import sphere_contacts
 from harness.scene.box import Box
@@ -121,3 +122,13 @@ def test_one_body_and_none_have_no_contacts():
         bodies = make_bodies(np.zeros((count, 3)), np.ones((count, 3)))
         found = sphere_contacts(bodies, WIDE, 1.0)
         assert len(found) == 0
+
+
+def test_a_body_that_crosses_the_box_without_end_is_refused():
+    with pytest.raises(InputError, match=r"walls reflect the bodies 1e\+18 times"):
+        contacts([[0, 0, 0], [1, 1, 0]], [[2e19, 0, 0], [0, 0, 0]])
+
+
+@pytest.mark.slow
+def test_bodies_that_fly_very_many_sizes_are_searched_for_in_no_more_windows_than_are_worth_it():
+    assert contacts([[0, 0, 0], [0, 1, 1]], [[1e8, 0, 0], [1e8, 0, 0]], sizes=[1e-30, 1e-30]) == []

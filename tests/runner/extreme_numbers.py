@@ -176,6 +176,8 @@ def _is_long(experiment: dict[str, Any]) -> bool:
     speeds = [1.5 if "speed" not in scene else max(_values(scene["speed"]))]
     for body in scene.get("bodies", ()):
         speeds.append(max(map(abs, body.get("velocity", [0]))))
+        if scene["shape"] != "sphere":  # a surface that spins meets the walls as one that flies
+            speeds.append(max(map(abs, body.get("spin", [0]))) * body.get("size", 1))
     room = min(scene["box"]) if "box" in scene else 0.0
     return room == 0.0 or max(speeds) * motion["duration"] / room > 1e4
 
