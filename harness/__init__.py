@@ -204,7 +204,7 @@ def results(db: str | Path = DATABASE) -> pd.DataFrame:
     >>> from harness.cli.main import main
     >>> db = str(path.with_name("results.db"))
     >>> main(["sweep", str(path), "--db", db, "--set", "repeats=1", "--quiet"])  # doctest: +ELLIPSIS
-    1 runs done (1 ok)...
+    1 run done (1 ok)...
     0
     >>> harness.results(db)["status"].tolist()
     ['ok']

@@ -34,6 +34,23 @@ def write_whole(path: Path, content: str | bytes, *, replace: bool = True) -> No
         _replace(path.resolve(), data)
 
 
+def require_writable(folder: Path) -> None:
+    """Make a folder and try to write into it; nothing is left of that.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made, or takes no files.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        with tempfile.TemporaryFile(prefix=".harness-", dir=folder) as file:
+            file.write(b"x")
+    except OSError as error:
+        error.filename = str(folder)
+        raise
+
+
 def _write_new(path: Path, data: bytes) -> None:
     with path.open("xb") as file:
         try:

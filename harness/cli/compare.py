@@ -310,12 +310,16 @@ def _print(found: Comparison) -> None:
             f"({one.misses} of {one.touching})"
         )
     for flight in found.free_runs:
-        parted = "never" if flight.diverged is None else f"at {flight.diverged:.6g} s"
         rates = "; ".join(
             f"{one.backend} {one.pair_hits_per_second:.4g} pair hits a second, energy {one.energy_change:+.2g}"
             for one in flight.afterwards
         )
-        say(f"{' and '.join(flight.backends)} in flight: first divergence {parted}; then {rates}")
+        parted = (
+            "they never diverge"
+            if flight.diverged is None
+            else f"they diverge at {flight.diverged:.6g} s; from then on"
+        )
+        say(f"{' and '.join(flight.backends)} in flight: {parted}: {rates}")
     for line in found.unsupported:
         say(line)
     for line in found.left_out:

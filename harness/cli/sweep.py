@@ -203,7 +203,8 @@ def _print_outcome(summary: SweepSummary, arguments: argparse.Namespace) -> None
         _print_table(["experiment", "runs", "failed", "time"], rows)
     listed = ", ".join(f"{number} {status}" for status, number in sorted(summary.done.items()))
     by_status = f" ({listed})" if listed else ""
-    say(f"{summary.done.total()} runs done{by_status}, {summary.kept.total()} kept from before")
+    done = summary.done.total()
+    say(f"{done} run{'' if done == 1 else 's'} done{by_status}, {summary.kept.total()} kept from before")
     if summary.controls:
         say(f"{summary.controls} of them done twice, as a control of the noise")
     failed_before = summary.kept.total() - summary.kept["ok"]

@@ -107,8 +107,13 @@ def _make(arguments: argparse.Namespace) -> int:
     from harness.truth.make import make
     from harness.truth.proof import WIDEST
     from harness.truth.readme import readme
+    from harness.whole_file import require_writable
 
     declaration = load_truth(Path(arguments.file))
+    try:
+        require_writable(Path(arguments.out))  # before the work, not after it
+    except OSError as error:
+        raise _unwritable(arguments.out, error) from error
     opened = open_meshes(list(declaration.meshes.values()))
     meshes = {path: mesh for path, mesh in opened.items() if not isinstance(mesh, str)}
     if broken := [mesh for mesh in opened.values() if isinstance(mesh, str)]:
@@ -116,10 +121,19 @@ def _make(arguments: argparse.Namespace) -> int:
     made = make(declaration, meshes, arguments.budget, _progress)
     cases, left_out = made.all(), sum(made.left_out.values())
     text = readme(declaration, cases, left_out, made.moved, WIDEST)
-    write_set(Path(arguments.out), cases, made.solids, made.surfaces, text)
+    try:
+        write_set(Path(arguments.out), cases, made.solids, made.surfaces, text)
+    except OSError as error:
+        raise _unwritable(arguments.out, error) from error
     asked = sum(family.count for family in declaration.families.values())
     print(f"{arguments.out}: {cases.number} of {asked} cases, {left_out} drafts left out")
     return 0
+
+
+def _unwritable(out: str, error: OSError) -> Exception:
+    from harness.errors import InputError
+
+    return InputError(f"{error.filename or out}: cannot be written: {error.strerror}; give another folder with --out")
 
 
 def _check(arguments: argparse.Namespace) -> int:

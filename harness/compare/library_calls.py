@@ -230,13 +230,16 @@ CALLS: dict[tuple[str, Shape], Call] = {
 """By backend and shape."""
 
 
-def _asked_for_gap(name: str, shape: Shape, last: str, instead: str) -> Call:
-    """The same call up to a line, and from there on others, which return the gap."""
-    call = CALLS[name, shape]
+def ended_by(call: Call, last: str, instead: str) -> Call:
+    """The same call up to a line, and from there on others, which return something else."""
     before, found, _ = call.ask.partition(last)
     if not found:
-        raise ValueError(f"the call of {name} has no such line: {last}")
+        raise ValueError(f"the call of {call.library} has no such line: {last}")
     return replace(call, ask=before + instead)
+
+
+def _asked_for_gap(name: str, shape: Shape, last: str, instead: str) -> Call:
+    return ended_by(CALLS[name, shape], last, instead)
 
 
 _FCL_GAP = """\
@@ -249,6 +252,16 @@ request.gjk_tolerance = 1e-12
 one, other = body(A, FACES_A, P, Q), body(B, FACES_B, R, S)
 return max(0.0, coal.distance(one, other, request, coal.DistanceResult()))
 """
+
+_RAPIER_GAP = """\
+contacts = [pair.find_deepest_contact() for pair in narrow.contact_pairs()]
+return max(0.0, min((contact.dist for contact in contacts if contact is not None), default=np.inf))
+"""
+# of bodies that are no sensors it tells contacts, ahead of time too, which is all that it tells of gaps
+_RAPIER_AHEAD = replace(
+    CALLS["rapier3d", "hull"],
+    ask=CALLS["rapier3d", "hull"].ask.replace(".sensor(True)", "").replace("    0.0, rapier3d", "    8.0, rapier3d"),
+)
 
 GAP_CALLS: dict[tuple[str, Shape], Call] = {
     ("fcl", "hull"): _asked_for_gap("fcl", "hull", "return fcl.collide", _FCL_GAP),
@@ -274,6 +287,7 @@ GAP_CALLS: dict[tuple[str, Shape], Call] = {
         "query = scene.get_query_output_port().Eval(context)\n"
         "return max(0.0, query.ComputeSignedDistancePairwiseClosestPoints()[0].distance)\n",
     ),
+    ("rapier3d", "hull"): ended_by(_RAPIER_AHEAD, "return any", _RAPIER_GAP),
     ("pybullet", "hull"): _asked_for_gap(
         "pybullet",
         "hull",

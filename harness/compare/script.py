@@ -20,15 +20,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
+from harness.compare.certificate import Judgement
 from harness.compare.exact_gap import ExactGap
+from harness.compare.impact_calls import IMPACT_CALLS
 from harness.compare.judge import judge
 from harness.compare.library_calls import CALLS, GAP_CALLS, Call
 from harness.compare.outcome import Case
+from harness.compare.poses import Frame, Pose
 from harness.scene.mesh import Surface
 from harness.scene.scene import Scene
 
-LONGEST = 60
-"""Lines."""
+LONGEST, LONGEST_OF_MOTION = 60, 80
+"""Lines, of a file about bodies at rest and about moving ones."""
 _SECONDS = 60.0
 # Numbers that are written out; more of them are packed.
 _FEW = 48
@@ -47,7 +50,7 @@ B = {second}
 FACES_B = {other_faces}
 P, Q = {position}, {quaternion}
 R, S = {other_position}, {other_quaternion}
-
+{motion}
 
 def {question}():
 {ask}
@@ -63,12 +66,12 @@ def exact(points, position, quaternion):
             for point in points.tolist()]
 
 
-one, other = exact(A, P, Q), exact(B, R, S)
+{placed}
 {proof}
 said = {question}()
 print("{library}", {version}, "says", {said})
 print("exactly, they {truth}, which is checked")
-print("reproduced" if {wrong} else "not reproduced: this version is right")
+print("reproduced" if {wrong} else "not reproduced: this version answers otherwise")
 '''
 
 _COMMON = """# the same point is a mean of vertices of both, with positive weights
@@ -101,6 +104,28 @@ assert (min(along[0]) - max(along[1])) ** 2 > limit ** 2 * sum(n * n for n in no
 )
 
 
+# of times: where the two are at a moment, and how they came there
+_MOTION = """V, W, X, Y = {velocity}, {spin}, {other_velocity}, {other_spin}  # velocities and spins
+DURATION, T = {duration}, {moment}  # of the motion, and a moment
+AT = [{at}, {turned}], [{other_at}, {other_turned}]  # then
+
+
+def times(p, q):
+    vector = np.multiply(p[0], q[1:]) + np.multiply(q[0], p[1:]) + np.cross(p[1:], q[1:])
+    return np.array([p[0] * q[0] - np.dot(p[1:], q[1:]), *vector])
+
+
+def moved(place, turn, velocity, spin, t):
+    turned = np.sinc(np.linalg.norm(spin) * t / 2 / np.pi) * t / 2 * np.array(spin)
+    return place + t * np.array(velocity), times([np.cos(np.linalg.norm(spin) * t / 2), *turned], turn)
+
+"""
+_STILL = "one, other = exact(A, P, Q), exact(B, R, S)"
+_MOVED = """for told, now in zip(AT, (moved(P, Q, V, W, T), moved(R, S, X, Y, T))):
+    assert all(np.allclose(a, b, rtol=0, atol=1e-13 * (1 + np.abs(b).max())) for a, b in zip(told, now))
+one, other = exact(A, *AT[0]), exact(B, *AT[1])"""
+
+
 _PACKING = "import base64\nimport zlib\n"
 _UNPACK = """def unpacked(text, kind):
     return np.frombuffer(zlib.decompress(base64.b85decode(text)), kind).reshape(-1, 3).copy()
@@ -115,12 +140,17 @@ def script_of(case: Case) -> str | None:
     ----------
     case : of two bodies
     """
-    calls = {"collision": CALLS, "tolerance": GAP_CALLS, "distance": GAP_CALLS}.get(case.question.query, {})
+    calls, written = {
+        "collision": (CALLS, _written),
+        "tolerance": (GAP_CALLS, _written_of_gap),
+        "distance": (GAP_CALLS, _written_of_gap),
+        "impact": (IMPACT_CALLS, _written_of_impact),
+    }[case.question.query]
     call = calls.get((case.wrong, case.scene.shape))  # of libraries alone: methods of this program have none
     if call is None or len(case.scene.bodies) != 2:
         return None
-    text = _written(case, call) if case.question.query == "collision" else _written_of_gap(case, call)
-    return text if text is not None and text.count("\n") <= LONGEST and reproduces(text) else None
+    text, longest = written(case, call), LONGEST_OF_MOTION if case.question.query == "impact" else LONGEST
+    return text if text is not None and text.count("\n") <= longest and reproduces(text) else None
 
 
 def reproduces(text: str) -> bool:
@@ -139,40 +169,43 @@ def reproduces(text: str) -> bool:
 
 def _written(case: Case, call: Call) -> str | None:
     scene = replace(case.scene, hulls={})  # what the library is given, not what it makes of it
-    bodies, pose, (i, j) = scene.bodies, case.pose, case.bodies
-    truth = judge(scene, i, j, pose.positions, pose.quaternions)
-    if truth.touching != case.judgement.touching:
+    truth, proof = _proved(scene, case.pose, case.bodies)
+    if proof is None or truth.touching != case.judgement.touching:
         return None
-    proof = truth.certificate
-    solids = [scene.solid_of_body(body) for body in (i, j)]
-    if truth.touching:
-        sides = [proof["first"], proof["second"]]
-        if "faces" in proof:  # of two triangles: their corners are vertices of the mesh
-            sides = [
-                [[int(solid.faces[face][k]), share] for k, share in side]
-                for solid, face, side in zip(solids, proof["faces"], sides, strict=True)
-            ]
-        checked = _COMMON.format(first=sides[0], second=sides[1])
-    else:
-        if scene.shape == "mesh":  # a plane between two triangles parts no more than these
-            hulls = judge(replace(scene, shape="hull"), i, j, pose.positions, pose.quaternions)
-            if hulls.touching:
-                return None
-            proof = hulls.certificate
-        checked = _PLANE.format(normal=proof["normal"])
     state = "overlapping" if truth.touching else "separate"
-    unit = call.unit(bodies.sizes)
+    unit = call.unit(scene.bodies.sizes)
     return _filled(
         scene,
         case,
         call,
         error=f"{state} {scene.shape}s of which it says the opposite",
         question="touching",
-        proof=checked,
+        proof=proof,
         said='"they touch" if said else "they do not touch"',
         truth=f"overlap by {-truth.gap / unit:.3g}" if truth.touching else f"are {truth.gap / unit:.3g} apart",
         wrong=f"said != {truth.touching}",
     )
+
+
+def _proved(scene: Scene, pose: Pose, pair: tuple[int, int]) -> tuple[Judgement, str | None]:
+    """Whether two bodies touch, and lines that prove it, where one common point or one plane does."""
+    truth = judge(scene, *pair, pose.positions, pose.quaternions)
+    proof = truth.certificate
+    if not truth.touching:
+        if scene.shape == "mesh":  # a plane between two triangles parts no more than these
+            hulls = judge(replace(scene, shape="hull"), *pair, pose.positions, pose.quaternions)
+            if hulls.touching:
+                return truth, None
+            proof = hulls.certificate
+        return truth, _PLANE.format(normal=proof["normal"])
+    sides = [proof["first"], proof["second"]]
+    if "faces" in proof:  # of two triangles: their corners are vertices of the mesh
+        solids = [scene.solid_of_body(body) for body in pair]
+        sides = [
+            [[int(solid.faces[face][k]), share] for k, share in side]
+            for solid, face, side in zip(solids, proof["faces"], sides, strict=True)
+        ]
+    return truth, _COMMON.format(first=sides[0], second=sides[1])
 
 
 def _written_of_gap(case: Case, call: Call) -> str | None:
@@ -205,8 +238,50 @@ def _written_of_gap(case: Case, call: Call) -> str | None:
     )
 
 
-def _filled(scene: Scene, case: Case, call: Call, **texts: str) -> str:
-    """The file, given what is asked and proved."""
+def _written_of_impact(case: Case, call: Call) -> str | None:
+    """Of a time at which the two are still apart, or of none before they are in each other."""
+    frame, scene, moment = case.pose, replace(case.scene, hulls={}), case.moment
+    if not isinstance(frame, Frame) or scene.shape == "sphere":
+        return None
+    i, j = sorted(case.bodies, key=lambda body: float(np.linalg.norm(frame.spins[body])))
+    there = frame.at(scene, moment)
+    straight = frame.positions + moment * frame.velocities
+    if not np.allclose(there.positions, straight, rtol=0.0, atol=1e-12 * np.abs(straight).max()):
+        return None  # a wall has turned one
+    truth, proof = _proved(scene, there, (i, j))
+    if proof is None or truth.touching != case.judgement.touching:
+        return None
+    unit = call.unit(scene.bodies.sizes)
+    motion = _MOTION.format(
+        velocity=(frame.velocities[i] / unit).tolist(),
+        spin=frame.spins[i].tolist(),
+        duration=frame.duration,
+        other_velocity=(frame.velocities[j] / unit).tolist(),
+        other_spin=frame.spins[j].tolist(),
+        moment=moment,
+        at=(there.positions[i] / unit).tolist(),
+        turned=there.quaternions[i].tolist(),
+        other_at=(there.positions[j] / unit).tolist(),
+        other_turned=there.quaternions[j].tolist(),
+    )
+    state = "are in each other" if truth.touching else "are still apart"
+    return _filled(
+        scene,
+        replace(case, bodies=(i, j)),
+        call,
+        error=f"two {scene.shape}s, of which it tells too {'late' if truth.touching else 'early'} when they meet",
+        question="first_touch",
+        motion=motion,
+        placed=_MOVED,
+        proof=proof,
+        said='"never" if said is None else f"at {said:.9g} s"',
+        truth=f"{state} at {moment:.9g} s",
+        wrong="said is None or said > T" if truth.touching else "said is not None and abs(said - T) <= 1e-6 * DURATION",
+    )
+
+
+def _filled(scene: Scene, case: Case, call: Call, motion: str = "", placed: str = _STILL, **texts: str) -> str:
+    """The file, given what is asked and proved, and how the bodies move where they do."""
     pose, unit = case.pose, call.unit(scene.bodies.sizes)
     (first, faces), (second, other_faces) = (_solid(scene.solid_of_body(body), unit) for body in case.bodies)
     position, other_position = ((pose.positions[body] / unit).tolist() for body in case.bodies)
@@ -229,6 +304,8 @@ def _filled(scene: Scene, case: Case, call: Call, **texts: str) -> str:
         quaternion=quaternion,
         other_position=other_position,
         other_quaternion=other_quaternion,
+        motion=motion,
+        placed=placed,
         **texts,
     )
 

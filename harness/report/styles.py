@@ -9,12 +9,11 @@ from harness.report.drawing import palette
 from harness.vocabulary import ALGORITHMS, MethodName
 
 # The first places are for algorithms of this program, in the order of the vocabulary; then come backends' own. Events
-# stand apart from all that steps, in a colour of their own, and so does the backend that is always compared. With six
-# colours some methods share one: the backends that are asked for gaps beside the own grid have other ones than it and
-# each other, and FCL's own detection has that of the tree that this program makes of FCL's.
+# stand apart from all that steps, in a colour of their own, and so do backends that come in the default sweep. The
+# others share one.
 _EVENTS = 3
-_BACKENDS = {"pybullet": 5, "coal": 6, "mujoco": 8, "trimesh": 9, "fcl": 10}
-_LATER = 16
+_BACKENDS = {"pybullet": 5, "coal": 6, "mujoco": 7, "trimesh": 8, "fcl": 10}
+_LATER = 9
 
 
 def style_of(method: MethodName) -> int:
@@ -30,7 +29,7 @@ def style_of(method: MethodName) -> int:
         return _EVENTS
     place = own.index(method.algorithm)
     place += place >= _EVENTS
-    return place if place < min(_BACKENDS.values()) else place + len(_BACKENDS)
+    return place if place < min(_BACKENDS.values()) else place + len(_BACKENDS) + 1
 
 
 def styles_of(methods: Mapping[str, MethodName]) -> dict[str, int]:
@@ -48,7 +47,7 @@ def styles_of(methods: Mapping[str, MethodName]) -> dict[str, int]:
     found: dict[str, int] = {}
     reserved = set(of_methods.values())
     for label, style in of_methods.items():
-        further = [style, *(other for other in same_colour(style) if other not in reserved), *range(24, 240)]
+        further = [style, *(other for other in same_colour(style) if other not in reserved), *range(88, 240)]
         found[label] = next(other for other in further if other not in found.values())
     return found
 
@@ -57,7 +56,7 @@ def same_colour(style: int) -> list[int]:
     """Styles of the same colour with the other markers.
 
     >>> same_colour(1)
-    [7, 13, 19]
+    [12, 23, 34, 45, 56, 67, 78]
     """
     colours, both = len(palette.LIGHT), math.lcm(len(palette.LIGHT), len(palette.MARKERS))
     return [(style + step) % both for step in range(colours, both, colours)]

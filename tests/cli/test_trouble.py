@@ -67,7 +67,7 @@ def test_a_full_disk_keeps_every_finished_run_and_the_next_sweep_does_the_rest(t
     kept = len(tables.runs(trouble))
     assert 0 < kept < 400
     assert main(["sweep", "trouble.yaml", "--db", str(trouble), "--set", f"repeats={kept + 1}"]) == 0
-    assert f"1 runs done (1 ok), {kept} kept" in capsys.readouterr().out
+    assert f"1 run done (1 ok), {kept} kept" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

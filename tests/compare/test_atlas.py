@@ -201,7 +201,7 @@ def test_a_reproduction_asks_the_library_and_checks_its_proof_and_one_that_shows
     ended = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
     assert "says they touch" in ended.stdout
-    assert ended.stdout.endswith("not reproduced: this version is right\n")
+    assert ended.stdout.endswith("not reproduced: this version answers otherwise\n")
     assert script_of(case) is None
 
 

@@ -36,6 +36,7 @@ ODD = (
     -1,
     -1e-30,
     1e-31,
+    1e-320,
     1e31,
     1e300,
     -1e300,
@@ -47,6 +48,8 @@ ODD = (
     float("inf"),
     True,
     "1e3",
+    "",
+    [],
 )
 VALUES = (*(number for number in NUMBERS if number), *ODD)
 LIMITS = ("timeout", "memory")

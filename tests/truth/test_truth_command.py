@@ -166,6 +166,15 @@ def test_everything_wrong_with_a_declaration_is_said_with_its_place(tmp_path, ca
     assert capsys.readouterr().err.startswith(f'{path}:3:31: there is no mesh "cub.ply"')
 
 
+def test_a_folder_that_takes_no_files_is_refused_before_the_work(tmp_path, capsys, monkeypatch):
+    (tmp_path / "small.yaml").write_text(DECLARED)
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr("harness.truth.make.make", None)  # which would take its time
+    for out, reason in (("file", "File exists"), ("file/below", "Not a directory")):
+        assert main(["truth", "make", str(tmp_path / "small.yaml"), "--out", str(tmp_path / out)]) == 2
+        assert f"{tmp_path / out}: cannot be written: {reason}; give another folder" in capsys.readouterr().err
+
+
 def test_a_folder_of_experiments_may_hold_declarations_of_sets(tmp_path, capsys):
     (tmp_path / "set.yaml").write_text(DECLARED)
     assert main(["validate", str(tmp_path)]) == 0

@@ -148,7 +148,7 @@ def _why_not(curve: Curve) -> str:
     """Why a method does not reach an error."""
     sound = [found.error for found in curve.settings if found.sees_all_hits]
     if sound:
-        return f"{error_text(min(sound), curve.settings[0].kind.unit)} at best"
+        return f"least error {error_text(min(sound), curve.settings[0].kind.unit)}"
     things = curve.settings[0].kind.things
     return f"{number(100 * min(found.wrong for found in curve.settings))} % of {things} wrong"
 

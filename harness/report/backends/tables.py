@@ -102,6 +102,7 @@ def flights(compared: Comparisons) -> Table | None:
                     (
                         words(record.experiment),
                         words(one["backend"]),
+                        words(next(name for name in flight["backends"] if name != one["backend"])),
                         Entry(number(parted) if parted is not None else "never", sort=plain(parted)),
                         counted(flight["shared_hits"]),
                         counted(one["pair_hits_per_second"]),
@@ -112,13 +113,14 @@ def flights(compared: Comparisons) -> Table | None:
     if not rows:
         return None
     columns = (
-        Column("Experiment", numeric=False), Column("Backend", numeric=False), Column("diverged", "s"),
-        Column("hits shared", "before"), Column("pair hits", "1/s, after"), Column("wall hits", "1/s, after"),
-        Column("energy", "relative change"),
+        Column("Experiment", numeric=False), Column("Backend", numeric=False), Column("beside", numeric=False),
+        Column("diverged", "s"), Column("hits shared", "before"), Column("pair hits", "1/s, after"),
+        Column("wall hits", "1/s, after"), Column("energy", "relative change"),
     )  # fmt: skip
     note = (
         "With each backend the bodies move by its own hits. Until the first hit that only one of two answers, the "
-        "motions are the same; after it chaos parts them, and only averages can be compared."
+        "motions are the same; after it chaos parts them, and only averages can be compared. Where they "
+        "never diverge, those are of the whole flight."
     )
     return Table("Bodies in flight", note, columns, tuple(rows))
 

@@ -6,13 +6,19 @@ style sheet gives a light and a dark value; in a file of its own, by the light v
 
 from __future__ import annotations
 
-# Apart from one another under simulated colour blindness, and dark enough against their background.
-LIGHT = ("#1798fa", "#c98704", "#a8002b", "#6a0a70", "#9b8ea3", "#4100c3")
-DARK = ("#69b1fc", "#ffa223", "#ee5a60", "#bc9eb6", "#c6f9d0", "#8664ff")
-# Eight shapes against six colours: 24 series before a pair of both comes back.
+# Apart from one another under simulated colour blindness, the first six most, and dark enough against their background.
+LIGHT = (
+    *("#1798fa", "#c98704", "#a8002b", "#6a0a70", "#9b8ea3", "#4100c3"),
+    *("#ed5d51", "#5d5bf8", "#9a57b1", "#b24068", "#520693"),
+)
+DARK = (
+    *("#69b1fc", "#ffa223", "#ee5a60", "#bc9eb6", "#c6f9d0", "#8664ff"),
+    *("#e30606", "#346c74", "#38f1fe", "#844daa", "#e9ee80"),
+)
+# Eight shapes against eleven colours: 88 series before a pair of both comes back.
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")
 
-SERIES = tuple(f"#0102f{place}" for place in range(len(LIGHT)))
+SERIES = tuple(f"#0102f{place:x}" for place in range(len(LIGHT)))
 INK, SOFT, GRID, PAGE = "#010203", "#010204", "#010205", "#010206"
 
 _VARIABLES = {

@@ -97,7 +97,9 @@ def _sure(cell: MapCell) -> str:
     if len(cell.ranked) == 1:
         return "the only one measured here that is right"
     others = len(cell.ranked) - 1
-    return f"told apart from {('the other one', 'both others')[others - 1] if others < 3 else f'all {others} others'}"
+    if others == 1:
+        return "the two, which are all that are right here, are told apart"
+    return f"told apart from all {others} others that are right here"
 
 
 def _second(cell: MapCell) -> str:

@@ -27,8 +27,8 @@ def map_figure(maps: Sequence[MethodMap], name: str = "map") -> Figure:
         f"The fastest method by {leaf_title(maps[0].x_leaf)} and {maps[0].y_leaf}",
         described,
         f"Each cell has the colour and the letter of the method with the least {metric} of those that are right "
-        "there. Hatched: it cannot be told from another. The table below says what each costs, and how far behind the "
-        "next one is.",
+        "there. Hatched: it cannot be told from another. Packing is the share of the box that bounding spheres fill. "
+        "The table below says what each costs, and how far behind the next one is.",
         lambda form, name: draw_maps(grids, form, name),
         tuple(sorted(keys.values(), key=lambda key: key.style)),
         labelled=False,
