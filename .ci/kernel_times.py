@@ -219,7 +219,9 @@ def print_table(base: str, rounds: list[dict[str, dict[str, float]]], changed: l
         pairs = [(one["here"][name], one["base"][name]) for one in known]
         ratios = [here / before for here, before in pairs if before > 0]
         if ratios:
-            print(f"  {name:32} {median(ratios):.2f} [{min(ratios):.2f}, {max(ratios):.2f}]")
+            # a single pair has no range, and says little
+            spread = f"[{min(ratios):.2f}, {max(ratios):.2f}]" if len(ratios) > 1 else "in a single round"
+            print(f"  {name:32} {median(ratios):.2f} {spread}")
         else:
             print(f"  {name:32} not run on both sides")
 

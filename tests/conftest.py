@@ -5,7 +5,8 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from harness.backends.registry import BackendError
+from harness.errors import NotInstalledError
 from harness.scene.bodies import Bodies
 from harness.scene.box import Box
 from harness.scene.hull import convex_hull
@@ -78,6 +81,21 @@ def pytest_configure(config: pytest.Config) -> None:
     """Try a quarter of the examples where slow tests are left out."""
     if config.option.markexpr == "not slow":
         settings.load_profile("quick")
+
+
+# of what would go on without it, and find less
+needs_pybullet = pytest.mark.skipif(find_spec("pybullet") is None, reason="pip install 'harness[pybullet]'")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call() -> Generator[None, object, object]:
+    """Beyond CPython 3.11 pybullet is an extra: what asks for it or its meshes is passed over where it is not there."""
+    try:
+        return (yield)
+    except (BackendError, ModuleNotFoundError, NotInstalledError) as error:
+        if find_spec("pybullet") is None and "pybullet" in str(error):
+            pytest.skip(str(error))
+        raise
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

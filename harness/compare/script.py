@@ -264,7 +264,7 @@ def _written_of_impact(case: Case, call: Call) -> str | None:
         other_at=(there.positions[j] / unit).tolist(),
         other_turned=there.quaternions[j].tolist(),
     )
-    state = "are in each other" if truth.touching else "are still apart"
+    state = "overlap" if truth.touching else "are apart"
     return _filled(
         scene,
         replace(case, bodies=(i, j)),
@@ -275,7 +275,7 @@ def _written_of_impact(case: Case, call: Call) -> str | None:
         placed=_MOVED,
         proof=proof,
         said='"never" if said is None else f"at {said:.9g} s"',
-        truth=f"{state} at {moment:.9g} s",
+        truth=f"{state} by {abs(truth.gap) / unit:.3g} at {moment:.9g} s",
         wrong="said is None or said > T" if truth.touching else "said is not None and abs(said - T) <= 1e-6 * DURATION",
     )
 

@@ -106,8 +106,12 @@ def leaves_text(leaves: Mapping[str, Any]) -> str:
 
     >>> leaves_text({"count": 50, "algorithm": ["grid", "tree"]})
     'count=50, algorithm=grid or tree'
+    >>> leaves_text({"query": "collision", "within": None})
+    'query=collision, no within'
     """
-    return ", ".join(f"{leaf}={_value_text(value)}" for leaf, value in leaves.items())
+    return ", ".join(
+        f"no {leaf}" if value is None else f"{leaf}={_value_text(value)}" for leaf, value in leaves.items()
+    )
 
 
 def _value_text(value: Any) -> str:

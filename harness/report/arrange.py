@@ -16,7 +16,7 @@ from harness.report.disputes import disputed
 from harness.report.methods import method_label
 from harness.report.point import METHOD, MeasuredPoint, numbers_of
 from harness.report.quantity import leaf_text
-from harness.report.series import Arrangement, Series, hashable, is_number
+from harness.report.series import Arrangement, Series, hashable, in_a_panel, is_number
 from harness.report.styles import styles_of
 from harness.report.words import leaf_label
 from harness.store.records import ControlRecord, ExperimentRecord
@@ -54,6 +54,9 @@ def arrange(
         x = _x_leaf(points, swept, report.get("x"))
         others = [leaf for leaf in swept if leaf != x and not _follows(points, leaf, x)]
         panel_leaf = _panel_leaf(points, others)
+        if panel_leaf and x and _crowds_alike(points, panel_leaf, x):
+            others = ["packing" if leaf == panel_leaf else leaf for leaf in others]
+            panel_leaf = "packing"
     lines: dict[str, list[MeasuredPoint]] = {}
     for point in points:
         # of a map's y, which may be derived, the value as it is written, without what is rounded off it
@@ -72,7 +75,7 @@ def arrange(
             Series(
                 label,
                 styles[label],
-                leaf_label(panel_leaf, first.get(panel_leaf)) if panel_leaf else "",
+                leaf_label(panel_leaf, in_a_panel(panel_leaf, first.get(panel_leaf))) if panel_leaf else "",
                 tuple(members),
                 tuple(point.value(x) for point in members) if x else tuple(None for _ in members),
             )
@@ -151,6 +154,20 @@ def _panel_leaf(points: Sequence[MeasuredPoint], others: Sequence[str]) -> str |
     return min(scene, key=lambda leaf: (_spread(points, leaf) > 8, -_spread(points, leaf)))
 
 
+def _crowds_alike(points: Sequence[MeasuredPoint], leaf: str, x: str) -> bool:
+    """Whether each value of the leaf has one x, as boxes do that grow with the bodies, where a packing has several."""
+
+    def xs_of(panel: str) -> list[int]:
+        found: dict[str, set[str]] = {}
+        for point in points:
+            found.setdefault(_key(point, (panel,)), set()).add(_key(point, (x,)))
+        return [len(xs) for xs in found.values()]
+
+    scenes = {(_key(point, (leaf,)), _key(point, (x,)), _key(point, ("packing",))) for point in points}
+    places = {place[1:] for place in scenes}
+    return max(xs_of(leaf)) == 1 < min(xs_of("packing")) and len(scenes) == len(places)
+
+
 def _label(parameters: Mapping[str, Any], leaves: Sequence[str]) -> str:
     """The swept leaves' values; where none is left, what the method is."""
     named = leaves or [leaf for leaf in ("backend", "algorithm") if leaf in parameters]
@@ -170,7 +187,7 @@ def _spread(points: Sequence[MeasuredPoint], leaf: str) -> int:
 
 
 def _key(point: MeasuredPoint, leaves: Sequence[str]) -> str:
-    return json.dumps([point.value(leaf) for leaf in leaves], sort_keys=True)
+    return json.dumps([in_a_panel(leaf, point.value(leaf)) for leaf in leaves], sort_keys=True)
 
 
 def _order(value: object) -> tuple[int, float]:

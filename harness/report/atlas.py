@@ -74,7 +74,8 @@ class AtlasResults:
     def overall(self) -> list[AtlasPart]:
         """Of each query that was asked of several kinds of bodies, a matrix of all of them together."""
         found = []
-        for query in dict.fromkeys(part.query for part in self.parts):
+        queries = dict.fromkeys(part.query for part in self.parts)
+        for query in sorted(queries, key=lambda query: query != "collision"):  # what most come for
             parts = [part for part in self.parts if part.query == query]
             if len(parts) > 1:
                 families = dict.fromkeys(family for part in parts for family in part.families)

@@ -72,6 +72,7 @@ def _environment() -> Environment:
         "light": Markup(palette.variables(dark=False)),
         "dark": Markup(palette.variables(dark=True)),
         "report_command": report_command,
+        "colours": len(palette.LIGHT),
         "outlines": [palette.OUTLINES[marker] for marker in palette.MARKERS],
     }
     return environment

@@ -112,6 +112,15 @@ def hashable(value: object) -> object:
     return value if isinstance(value, int | float | str | None) else json.dumps(value, sort_keys=True)
 
 
+def in_a_panel(leaf: str, value: Any) -> Any:
+    """A leaf's value as points share it: boxes that are written in a few digits make packings a little apart.
+
+    >>> in_a_panel("packing", 0.0499997), in_a_panel("count", 50)
+    (0.05, 50)
+    """
+    return float(f"{value:.3g}") if leaf == "packing" and is_number(value) else value
+
+
 def is_number(value: object) -> bool:
     """Whether a leaf's value has a place on an axis."""
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -8,9 +8,10 @@ from harness.compare.comparison import compare, compare_all
 from harness.compare.hard_poses import hard_poses
 from harness.compare.poses import flown
 from tests.compare.test_comparison import compared, written
-from tests.conftest import cube_mesh, random_scene
+from tests.conftest import cube_mesh, needs_pybullet, random_scene
 
 
+@needs_pybullet
 def test_every_third_pose_is_asked_of_both(tmp_path):
     scene = random_scene("sphere", 4, 3.0)
     (tally,) = compare([flown(scene, 9, 0.1)], ["fcl", "pybullet"], budget=Budget(every=3)).tallies
@@ -32,6 +33,7 @@ def test_scenes_that_differ_in_sizes_alone_are_told_of_in_one_line():
     assert line.endswith(": not asked, 1e-09 s were spent")
 
 
+@needs_pybullet
 def test_poses_that_several_methods_were_not_asked_about_are_told_of_once():
     class Ending(Budget):
         @property
@@ -78,6 +80,7 @@ def test_a_question_takes_no_more_than_its_share_and_leaves_the_rest_to_the_next
         assert budget.why == "3600 s were spent"
 
 
+@needs_pybullet
 def test_json_says_what_was_left_out(tmp_path, capsys):
     code, document = compared(capsys, written(tmp_path, "sphere"), "--budget", "1e-6", "--every", "2")
     assert code == 0

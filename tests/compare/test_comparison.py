@@ -7,7 +7,7 @@ import pytest
 from harness.cli.main import main
 from harness.compare.comparison import compare
 from harness.compare.poses import flown
-from tests.conftest import random_scene, slow_beyond
+from tests.conftest import needs_pybullet, random_scene, slow_beyond
 from tests.narrowphase.meshes import crowd, mesh_named
 
 EXPERIMENT = """
@@ -89,6 +89,7 @@ def test_a_backend_that_dies_at_a_pose_is_asked_the_others(name, defective):
     assert not found.passed
 
 
+@needs_pybullet
 def test_a_mesh_replaced_by_its_hull_is_an_approximation():
     scene = crowd(mesh_named("pumpkin-1753.ply"), "mesh", 12, 1.4, 0)
     found = compare([flown(scene, 3, 1 / 30)], ["fcl", "pybullet"])

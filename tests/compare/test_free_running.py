@@ -1,9 +1,10 @@
 """Two backends run the same scene by their own hits, up to the first that only one of them reports."""
 
 from harness.compare.free_running import run_both
-from tests.conftest import random_scene
+from tests.conftest import needs_pybullet, random_scene
 
 
+@needs_pybullet
 def test_flights_of_equal_backends_never_part_and_those_of_a_blind_one_do_at_its_first_miss(defective):
     scene = random_scene("sphere", 12, 4.0, seed=3)
     how = {"frames": 60, "dt": 1 / 30, "response": "elastic"}

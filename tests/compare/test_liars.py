@@ -8,7 +8,7 @@ from harness.compare.hard_poses import hard_poses
 from harness.compare.outcome import LOADING
 from harness.compare.poses import Pose, PoseSet, flown
 from tests.compare.liars import BY_CHANGE, BY_CLAIM, BY_CONTRACT, LIARS, install
-from tests.conftest import cube_mesh, random_scene
+from tests.conftest import cube_mesh, needs_pybullet, random_scene
 
 # Left out of the quick tests, which keep one or two of each kind.
 SLOW = (
@@ -58,6 +58,7 @@ def named(found):
     return {case.wrong for case in found.cases + found.shared} | {failure.backend for failure in found.failures}
 
 
+@needs_pybullet
 @pytest.mark.parametrize("name", marked(name for name in LIARS if name not in ("sleeps", "caches")))
 def test_a_liar_is_caught_and_nobody_else_is_accused(name, judged):
     found = judged(name)
@@ -82,6 +83,7 @@ def test_one_that_does_not_answer_is_given_up_and_named(liar):
     assert (len(found.failures), len(said)) == (5, 1)
 
 
+@needs_pybullet
 @pytest.mark.parametrize("name", marked(BY_CONTRACT))
 def test_a_breach_of_the_contract_names_the_backend(name, judged):
     reasons = {failure.reason for failure in judged(name).failures}
@@ -90,6 +92,7 @@ def test_a_breach_of_the_contract_names_the_backend(name, judged):
     assert all(told in reason for reason in reasons)
 
 
+@needs_pybullet
 @pytest.mark.parametrize("name", marked(BY_CLAIM))
 def test_what_a_backend_claims_is_bounded(name, judged):
     assert [failure.kind for failure in judged(name).failures if failure.pose == LOADING] == ["claim"]

@@ -9,7 +9,7 @@ from harness.compare.poses import Pose, PoseSet, flown
 from harness.compare.tally import Approximation
 from harness.scene.box import Box
 from harness.scene.scene import Scene
-from tests.conftest import cube_mesh, make_bodies
+from tests.conftest import cube_mesh, make_bodies, needs_pybullet
 
 
 def at_rest(scene):
@@ -33,6 +33,7 @@ def test_two_that_are_wrong_together_are_found_by_the_judge(defective):
     assert small.wrong == case.wrong
 
 
+@needs_pybullet
 def test_a_hull_for_a_mesh_is_measured_in_false_hits_and_misses():
     # a small one inside a large one touches its hull, but not its surface
     bodies = make_bodies([[0, 0, 0], [0.02, 0, 0], [2, 0, 0], [2.3, 0, 0]], sizes=[1.0, 0.2, 1.0, 1.0])

@@ -42,7 +42,8 @@ def test_a_line_through_points(stats, given):
     slope, scatter, explained = statistics._line(x, y)
     assert slope == pytest.approx(fit.slope, rel=1e-9, abs=1e-12)
     assert explained == pytest.approx(fit.rvalue**2, abs=1e-12)
-    assert scatter == pytest.approx(fit.stderr, rel=1e-6, abs=1e-6)
+    if len(x) > 2:  # two points have no scatter about their line; SciPy has said 0 and not a number
+        assert scatter == pytest.approx(fit.stderr, rel=1e-6, abs=1e-6)
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=50))

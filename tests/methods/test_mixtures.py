@@ -15,6 +15,7 @@ from harness.vocabulary import MethodName
 from tests.conftest import cube_mesh
 from tests.narrowphase.meshes import mesh_named
 
+pytest.importorskip("pybullet_data", reason="pip install 'harness[pybullet]'")
 MESHES = (
     cube_mesh(),
     mesh_named("pumpkin-1753.ply"),

@@ -1,7 +1,12 @@
 """Points arranged into series."""
 
 from harness.report.arrange import arrange
+from harness.report.drawing import palette
+from harness.report.markup import section_html
 from harness.report.styles import style_of
+from harness.report.table import Column, Table, words
+from harness.store.database import Database
+from harness.store.records import PointRow
 from harness.store.tables import experiments, runs
 from harness.vocabulary import MethodName
 
@@ -47,3 +52,33 @@ def test_a_failed_run_counts_in_no_median(database):
     point = next(series for series in found.series if series.label == "fcl brute-force").at(1000)
     assert len(point.runs) == 5
     assert point.summary("pair_seconds") is None
+
+
+def test_boxes_that_grow_with_the_bodies_are_a_panel_each_packing(tmp_path):
+    # sides as a file writes them: the packings of a row differ in the sixth digit
+    sides = {(50, 0.05): 8.06, (500, 0.05): 17.3647, (50, 0.2): 5.0775, (500, 0.2): 10.939}
+    points = [
+        PointRow(f"{count} {packing} {backend}", {
+            "count": count, "box": [side] * 3, "packing": count * 0.5235987755982988 / side**3, "backend": backend,
+            "algorithm": "native", "shape": "hull", "query": "collision",
+        })
+        for (count, packing), side in sides.items()
+        for backend in ("coal", "mujoco")
+    ]  # fmt: skip
+    text = "title: Peers\nreport: {x: count}\n"
+    with Database.open(tmp_path / "results.db") as database:
+        sweep = database.begin_sweep("harness sweep", None, "0.1.0", {"processor": "one"}, {})
+        specification = {"swept": ["count", "box", "backend"], "report": {"x": "count"}}
+        database.list_experiment(sweep, "peers", "Peers", None, text, specification, points)
+    found = arranged(tmp_path / "results.db", "peers")
+    assert found.panels == ("packing 0.05", "packing 0.2")
+    assert [(line.label, line.x) for line in found.series] == [("coal", (50, 500)), ("mujoco", (50, 500))] * 2
+
+
+def test_the_key_beside_a_row_has_the_colour_and_the_marker_of_a_figure():
+    columns = (Column("Method", numeric=False),)
+    for style in range(2 * len(palette.LIGHT)):
+        key = section_html("one", "One", Table("One", "", columns, ((words("one", style),),)))
+        place = palette.SERIES.index(palette.colour(style))
+        assert f'class="key c{place}"' in key
+        assert f"#k{palette.MARKERS.index(palette.marker(style))}" in key

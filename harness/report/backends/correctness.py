@@ -25,11 +25,13 @@ class Correctness:
     verdicts : by method, how many of its verdicts were held against another method's
     wrong : by method, how often it was wrong outside of its tolerance, or failed
     in_part : those of which a comparison left something out
+    where : by method, the experiments at whose poses it was wrong
     """
 
     verdicts: Mapping[MethodName, int] = field(default_factory=dict)
     wrong: Mapping[MethodName, int] = field(default_factory=dict)
     in_part: frozenset[MethodName] = frozenset()
+    where: Mapping[MethodName, tuple[str, ...]] = field(default_factory=dict)
 
     def is_wrong(self, method: MethodName) -> bool:
         """Whether it was proven wrong, or failed."""
@@ -49,6 +51,7 @@ def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
     verdicts: Counter[MethodName] = Counter()
     wrong: Counter[MethodName] = Counter()
     in_part: set[MethodName] = set()
+    where: dict[MethodName, dict[str, None]] = {}
     for record in records:
         tallies = record.document["pairs"]
         for tally in tallies:
@@ -63,8 +66,10 @@ def correctness(records: Sequence[ComparisonRecord]) -> Correctness:
                 asked = {(case["shape"], _query(case))}
             for shape, query in sorted(asked):
                 for name in case["wrong"].split(" and "):
-                    wrong[MethodName.read(name, shape, query)] += 1
-    return Correctness(verdicts, wrong, frozenset(in_part))
+                    method = MethodName.read(name, shape, query)
+                    wrong[method] += 1
+                    where.setdefault(method, {})[record.experiment] = None
+    return Correctness(verdicts, wrong, frozenset(in_part), {method: tuple(names) for method, names in where.items()})
 
 
 def _query(row: Mapping[str, Any]) -> Query:

@@ -104,7 +104,7 @@ def _label(method: MethodName, methods: Sequence[MethodName]) -> str:
 
 def _correctness(method: MethodName, known: Correctness) -> Entry:
     if known.is_wrong(method):
-        return words("", flag=f"wrong {plural(known.wrong[method], 'time')}")
+        return words("", flag=f"wrong {plural(known.wrong[method], 'time')}, in {', '.join(known.where[method])}")
     if not known.is_right(method):
         return words("not compared")
     part = ", compared in part" if method in known.in_part else ""

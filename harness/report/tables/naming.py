@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from harness.report.point import MeasuredPoint
 from harness.report.quantity import leaf_text
-from harness.report.series import Arrangement, Series
+from harness.report.series import Arrangement, Series, in_a_panel
 from harness.report.table import Column, Entry, plain
 from harness.report.words import capital, leaf_label, metric_title
 
@@ -26,7 +26,7 @@ def panel_entry(arrangement: Arrangement, point: MeasuredPoint) -> list[Entry]:
     """Its value at a point."""
     if arrangement.panel_leaf is None:
         return []
-    value = point.parameters.get(arrangement.panel_leaf)
+    value = in_a_panel(arrangement.panel_leaf, point.parameters.get(arrangement.panel_leaf))
     return [Entry(leaf_text(value), numeric=False, mark="keep", sort=plain(value))]
 
 
