@@ -75,7 +75,7 @@ class Casts:
             waiting = waiting[done + 1 :]
         return found
 
-    def _answers(self, questions: list[Question]) -> Iterator[float | None]:
+    def _answers(self, questions: list[CastQuestion]) -> Iterator[float | None]:
         """The answers to questions in turn, up to the first that has none."""
         if self._child is None:
             shapes = self._shapes
@@ -114,7 +114,7 @@ class ShapeData(NamedTuple):
         return rapier3d.SharedShape.ball(self.radius)
 
 
-class Part(NamedTuple):
+class RelativeMotion(NamedTuple):
     """The motion of one body in the axes of another, from a time on: lengths in units, turn w x y z."""
 
     start: float
@@ -125,15 +125,15 @@ class Part(NamedTuple):
     spin: list[float]
 
 
-class Question(NamedTuple):
+class CastQuestion(NamedTuple):
     """A pair, the solids of the body at rest and of the moving one, and the parts of the motion."""
 
     pair: tuple[int, int]
     solids: tuple[Solid, Solid]
-    parts: list[Part]
+    parts: list[RelativeMotion]
 
 
-def _questions(pairs: Pairs, motion: UniformMotion, solids: list[Solid], unit: float) -> list[Question]:
+def _questions(pairs: Pairs, motion: UniformMotion, solids: list[Solid], unit: float) -> list[CastQuestion]:
     """One a pair; the body that spins less is the one at rest."""
     spins = np.linalg.norm(motion.spins, axis=1)
     slower_first = spins[pairs[:, 0]] <= spins[pairs[:, 1]]
@@ -148,7 +148,7 @@ def _questions(pairs: Pairs, motion: UniformMotion, solids: list[Solid], unit: f
     back, between = turns[0].inv(), places[1] - places[0]
     velocities = motion.velocities[b] - motion.velocities[a] - np.cross(motion.spins[a], between)
     parts = [
-        Part(*row)
+        RelativeMotion(*row)
         for row in zip(
             starts.tolist(),
             np.repeat(durations, counts).tolist(),
@@ -162,7 +162,7 @@ def _questions(pairs: Pairs, motion: UniformMotion, solids: list[Solid], unit: f
     two_solids = [(solids[i], solids[j]) for i, j in zip(rest.tolist(), moving.tolist(), strict=True)]
     spans = zip((ends - counts).tolist(), ends.tolist(), strict=True)
     told = zip(pairs.tolist(), two_solids, spans, strict=True)
-    return [Question((i, j), of, parts[first:end]) for (i, j), of, (first, end) in told]
+    return [CastQuestion((i, j), of, parts[first:end]) for (i, j), of, (first, end) in told]
 
 
 def _answer_all(channel: Channel, shapes: dict[Solid, ShapeData]) -> None:
@@ -185,7 +185,7 @@ def _world(shape: rapier3d.SharedShape) -> rapier3d.QueryPipeline:
     return pipeline
 
 
-def _cast(world: rapier3d.QueryPipeline, shape: rapier3d.SharedShape, parts: list[Part]) -> float | None:
+def _cast(world: rapier3d.QueryPipeline, shape: rapier3d.SharedShape, parts: list[RelativeMotion]) -> float | None:
     options = rapier3d.ShapeCastOptions()
     for part in parts:
         motion = rapier3d.NonlinearRigidMotion(

@@ -38,7 +38,7 @@ class BackendError(InputError):
 
 
 @dataclass(frozen=True)
-class Declaration:
+class DeclaredBackend:
     """A backend that is declared, installed or not.
 
     Parameters
@@ -136,16 +136,16 @@ def silence() -> Iterator[None]:
         os.close(nowhere)
 
 
-def _why(declared: Declaration, error: ImportError) -> str:
+def _why(declared: DeclaredBackend, error: ImportError) -> str:
     return f"not installed; {declared.command}" if declared.command else f"{type(error).__name__}: {error}"
 
 
-def _declared() -> dict[str, Declaration]:
+def _declared() -> dict[str, DeclaredBackend]:
     return _declared_on(tuple(sys.path))
 
 
 @lru_cache(maxsize=8)
-def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
+def _declared_on(path: tuple[str, ...]) -> dict[str, DeclaredBackend]:
     """Of one `sys.path`: reading the metadata of every package takes milliseconds, which each run would spend.
 
     A name of ours stays ours, whoever declares it besides.
@@ -158,13 +158,13 @@ def _declared_on(path: tuple[str, ...]) -> dict[str, Declaration]:
     return {**theirs, **_in_this_folder(), **{name: found for name, found in pointed if found.ours}}
 
 
-def _pointed(entry: EntryPoint, package: str) -> Declaration:
+def _pointed(entry: EntryPoint, package: str) -> DeclaredBackend:
     extras = _extras(entry)
     command = f"pip install '{package or PROGRAM}[{','.join(extras)}]'" if extras else None
     needed = _required(package, *extras) if package else frozenset[str]()
     ours = package == PROGRAM
     source = _source(entry) if ours else None
-    return Declaration(entry.load, source, command, needed if ours or not package else needed | {package}, ours)
+    return DeclaredBackend(entry.load, source, command, needed if ours or not package else needed | {package}, ours)
 
 
 def _source(entry: EntryPoint) -> tuple[str, str] | None:
@@ -179,14 +179,14 @@ def _extras(entry: EntryPoint) -> list[str]:
         return []
 
 
-def _in_this_folder() -> dict[str, Declaration]:
+def _in_this_folder() -> dict[str, DeclaredBackend]:
     """The backends of this folder, each named as its file."""
     found = {}
     for file in sorted(Path(__file__).parent.glob("*.py")):
         said = dict(_constants(file))
         if "BACKEND" in said:
             package = said.get("PACKAGE")
-            found[file.stem] = Declaration(
+            found[file.stem] = DeclaredBackend(
                 _loader(file.stem),
                 (file.stem, said["BACKEND"]),
                 f"pip install {package}" if package else None,

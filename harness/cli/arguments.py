@@ -6,7 +6,7 @@ import argparse
 import math
 
 
-def count(text: str) -> int:
+def positive_count(text: str) -> int:
     """A whole number of 1 or more."""
     number = int(text) if text.strip().isdecimal() else 0
     if number < 1:
@@ -14,7 +14,7 @@ def count(text: str) -> int:
     return number
 
 
-def seconds(text: str) -> float:
+def positive_seconds(text: str) -> float:
     """A time above 0, or a fraction such as 1/60."""
     above, slash, below = text.partition("/")
     try:
@@ -26,6 +26,6 @@ def seconds(text: str) -> float:
     return time
 
 
-def names(text: str) -> list[str]:
+def comma_separated(text: str) -> list[str]:
     """Names, with commas between them."""
     return [name.strip() for name in text.split(",") if name.strip()]

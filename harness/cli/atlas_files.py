@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from harness.cli.surveying import Surveyed, cell_row
-from harness.compare.atlas import Cell, WrongGap
+from harness.compare.atlas import AtlasCell, WrongGap
 from harness.compare.outcome import Case
 from harness.compare.poses import Pose
 from harness.scene.scene import Scene
@@ -20,7 +20,7 @@ from harness.whole_file import write_whole
 
 CELLS, ACCUSATIONS = "cells.csv", "accusations.json"
 
-_COLUMNS = (*(field.name for field in fields(Cell)), "per_million", "low", "high")
+_COLUMNS = (*(field.name for field in fields(AtlasCell)), "per_million", "low", "high")
 
 
 def save_atlas(found: Surveyed, files: Mapping[int, Path], folder: Path) -> None:

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from harness import DATABASE
-from harness.cli.arguments import count, names, seconds
+from harness.cli.arguments import comma_separated, positive_count, positive_seconds
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 from harness.errors import InputError
@@ -43,10 +43,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "alone for its own pipeline; those of the experiment where it names several, else fcl,pybullet",
     )
     parser.add_argument(
-        "--budget", metavar="SECONDS", type=seconds, help="stop asking after so long, and say what was left out"
+        "--budget",
+        metavar="SECONDS",
+        type=positive_seconds,
+        help="stop asking after so long, and say what was left out",
     )
     parser.add_argument(
-        "--every", metavar="N", type=count, default=1, help="ask about every N-th pose only, and say so"
+        "--every", metavar="N", type=positive_count, default=1, help="ask about every N-th pose only, and say so"
     )
     add_override_argument(parser)
     parser.add_argument(
@@ -191,17 +194,17 @@ def _show(found: _Findings, files: dict[int, str], *, as_json: bool) -> None:
 
 def _chosen(text: str | None) -> tuple[str, ...]:
     """The backends and methods that `--backends` names."""
-    from harness.backends.registry import names as declared
+    from harness.backends.registry import names
     from harness.experiment.messages import listed, near, shown
     from harness.vocabulary import ALGORITHMS, QUERIES, PipelineName, algorithms_of
 
     if text is None:
         return ()
-    chosen = tuple(dict.fromkeys(names(text)))
+    chosen = tuple(dict.fromkeys(comma_separated(text)))
     for name in chosen:
         backend, algorithm = PipelineName.read(name)
-        if backend not in declared():
-            hint = near(backend, declared()) or f"; there are {listed(declared())}"
+        if backend not in names():
+            hint = near(backend, names()) or f"; there are {listed(names())}"
             raise InputError(f"--backends: unknown backend {shown(backend)}{hint}")
         # of queries other than collision also the backend's own; which experiments ask is known when they are read
         possible = [word for query in QUERIES for word in algorithms_of(backend, query) if ALGORITHMS[word].stepped]

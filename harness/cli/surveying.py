@@ -16,7 +16,7 @@ from typing import Any
 from harness.backends.registry import names as declared
 from harness.backends.registry import packages
 from harness.backends.statement import missing
-from harness.compare.atlas import JUDGE, Atlas, Cell, Survey, survey
+from harness.compare.atlas import JUDGE, Atlas, AtlasCell, Survey, survey
 from harness.compare.budget import Budget, LeftOut, in_sentences
 from harness.compare.document import Reduced, document, reduced, shown_case
 from harness.compare.gap_atlas import SURVEYS
@@ -210,13 +210,13 @@ def survey_key(experiment: Experiment, meshes: Opened, name: str) -> str:
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def cell_row(cell: Cell) -> dict[str, Any]:
+def cell_row(cell: AtlasCell) -> dict[str, Any]:
     """A cell, with its rate and the interval of that; None without verdicts."""
     rate, low, high = cell.per_million if cell.verdicts else (None, None, None)
     return asdict(cell) | {"per_million": rate, "low": low, "high": high}
 
 
-def cell_text(cell: Cell) -> str:
+def cell_text(cell: AtlasCell) -> str:
     """A cell in a line."""
     asked = "" if cell.query == "collision" else f"{cell.query}, "
     seen = f"{asked}{cell.family}, {cell.shape}{f' of {cell.mesh}' if cell.mesh else ''}"

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from harness import DATABASE
-from harness.cli.arguments import count
+from harness.cli.arguments import positive_count
 from harness.cli.overrides import add_override_argument, overrides_of
 from harness.cli.width import say
 from harness.errors import InputError, Problem
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     which.add_argument("--dry-run", action="store_true", help="say what would be done and how long it may take")
     where = parser.add_argument_group("where").add_mutually_exclusive_group()
     where.add_argument(
-        "--jobs", type=count, metavar="N", help="N runs at a time on this machine; their times do not count"
+        "--jobs", type=positive_count, metavar="N", help="N runs at a time on this machine; their times do not count"
     )
     where.add_argument(
         "--cluster",

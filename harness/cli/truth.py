@@ -10,7 +10,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from harness.cli.arguments import count, names, seconds
+from harness.cli.arguments import comma_separated, positive_count, positive_seconds
 from harness.cli.width import HelpFormatter
 
 DEFAULT_BUDGET = 7200.0
@@ -60,9 +60,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         formatter_class=HelpFormatter,
     )
     ask.add_argument("folder", metavar="DIR", help="a folder that `make` wrote")
-    ask.add_argument("--backends", metavar="NAMES", type=names, default=["own"], help="such as own,fcl (default: own)")
-    ask.add_argument("--families", metavar="NAMES", type=names, default=[], help="ask about these alone")
-    ask.add_argument("--every", metavar="N", type=count, default=1, help="ask about every N-th case of each family")
+    ask.add_argument(
+        "--backends", metavar="NAMES", type=comma_separated, default=["own"], help="such as own,fcl (default: own)"
+    )
+    ask.add_argument("--families", metavar="NAMES", type=comma_separated, default=[], help="ask about these alone")
+    ask.add_argument(
+        "--every", metavar="N", type=positive_count, default=1, help="ask about every N-th case of each family"
+    )
     ask.add_argument(
         "--dt",
         metavar="SECONDS",
@@ -73,14 +77,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ask.add_argument(
         "--within",
         metavar="SECONDS",
-        type=seconds,
+        type=positive_seconds,
         default="1e-9",
         help="by which a time may be out of its bounds (default: 1e-9)",
     )
     ask.add_argument(
         "--timeout",
         metavar="SECONDS",
-        type=seconds,
+        type=positive_seconds,
         default="60",
         help="that a case may take; its process is then ended (default: 60)",
     )
@@ -152,11 +156,11 @@ def _ask(arguments: argparse.Namespace) -> int:
 
     from harness.errors import InputError
     from harness.truth.answer_table import document, documents, table
-    from harness.truth.answerers import questions
+    from harness.truth.answerers import asked_engines
     from harness.truth.ask import ask, chosen
     from harness.truth.folder import read_set
 
-    asked_of = questions(arguments.backends, arguments.dt)
+    asked_of = asked_engines(arguments.backends, arguments.dt)
     if arguments.db is not None:
         _open(arguments.db).close()  # before the work, not after it
     given = read_set(Path(arguments.folder))
@@ -198,7 +202,7 @@ def _keep(found: dict[str, dict[str, Any]], folder: str, database: str) -> None:
 
 
 def _steps(text: str) -> list[float]:
-    return [seconds(word) for word in names(text)]
+    return [positive_seconds(word) for word in comma_separated(text)]
 
 
 def _progress(line: str) -> None:

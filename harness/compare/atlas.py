@@ -38,7 +38,7 @@ _TIMED = 50
 
 
 @dataclass
-class Cell:
+class AtlasCell:
     """One engine on one family of poses of one shape.
 
     Parameters
@@ -115,7 +115,7 @@ class Atlas:
     unsupported : what could not be asked, and why
     """
 
-    cells: list[Cell] = field(default_factory=list)
+    cells: list[AtlasCell] = field(default_factory=list)
     cases: dict[int, Case] = field(default_factory=dict)
     gaps: dict[int, WrongGap] = field(default_factory=dict)
     failures: list[Failure] = field(default_factory=list)
@@ -268,12 +268,12 @@ class Survey:
         if line not in self.atlas.unsupported:
             self.atlas.unsupported.append(line)
 
-    def cell(self, name: str) -> Cell:
+    def cell(self, name: str) -> AtlasCell:
         """What has been found of an engine in this family."""
         if name not in self._places:
             self._places[name] = len(self.atlas.cells)
             mesh = self.mesh.name if self.mesh is not None and self.shape != "sphere" else ""
-            self.atlas.cells.append(Cell(name, self.family, self.shape, mesh, query=self.query))
+            self.atlas.cells.append(AtlasCell(name, self.family, self.shape, mesh, query=self.query))
         return self.atlas.cells[self._places[name]]
 
     def failures_of(self, name: str) -> int:
@@ -325,7 +325,7 @@ class Survey:
                 names, name, _BODIES, truth, scene=scene, pose=truths.pose, query_index=place + 1
             )
 
-    def failed(self, cell: Cell, pose: Pose, place: int, reason: str) -> None:
+    def failed(self, cell: AtlasCell, pose: Pose, place: int, reason: str) -> None:
         """Keep how an engine failed at a pose."""
         cell.failures += 1
         pair = (cell.engine, JUDGE)

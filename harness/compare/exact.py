@@ -91,7 +91,7 @@ def in_floats(points: Sequence[Point]) -> Floats:
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedPoints:
     """The points of one body, rigidly placed.
 
     Parameters
@@ -106,7 +106,7 @@ class Placed:
     quaternion: Floats
 
 
-def world_points(first: Placed, second: Placed) -> tuple[Points, Points, Fraction]:
+def world_points(first: PlacedPoints, second: PlacedPoints) -> tuple[Points, Points, Fraction]:
     """Points of two bodies in the world, exactly.
 
     Returns
@@ -150,7 +150,7 @@ def determinant(a: Point, b: Point, c: Point) -> int:
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 
 
-def _rough(placed: Placed) -> Floats:
+def _rough(placed: PlacedPoints) -> Floats:
     """The points turned, in floats."""
     w, x, y, z = placed.quaternion.tolist()
     norm = w * w + x * x + y * y + z * z

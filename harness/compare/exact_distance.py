@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from harness.arrays import Floats, Ints
 from harness.compare.convex import CommonPoint, connect
-from harness.compare.exact import Placed, Point, dot, world_points
+from harness.compare.exact import PlacedPoints, Point, dot, world_points
 
 Parts: TypeAlias = NDArray[Any]
 """(f, k) int array, the corners of each triangle; of a hull one row with all of its vertices."""
@@ -72,12 +72,12 @@ class DistanceCertificate:
         """m, to within rounding of 1e-16 of itself."""
         return root(self.upper)
 
-    def check(self, first: Placed, faces: Parts, second: Placed, other_faces: Parts) -> None:
+    def check(self, first: PlacedPoints, faces: Parts, second: PlacedPoints, other_faces: Parts) -> None:
         """Prove the bounds anew from the bodies alone.
 
         Parameters
         ----------
-        first, second : Placed vertices
+        first, second : PlacedPoints vertices
         faces, other_faces : (f, 3) int arrays; of a hull one row with all of its vertices
 
         Raises
@@ -106,18 +106,20 @@ class DistanceCertificate:
             raise ArithmeticError("the planes leave out a pair of triangles")
 
 
-def hull_distance(first: Placed, second: Placed) -> DistanceCertificate:
+def hull_distance(first: PlacedPoints, second: PlacedPoints) -> DistanceCertificate:
     """The distance of two hulls as solids, with its certificate."""
     whole, other_whole = (np.arange(len(placed.points))[None] for placed in (first, second))
     return surface_distance(first, whole, second, other_whole)
 
 
-def surface_distance(first: Placed, faces: Parts, second: Placed, other_faces: Parts) -> DistanceCertificate:
+def surface_distance(
+    first: PlacedPoints, faces: Parts, second: PlacedPoints, other_faces: Parts
+) -> DistanceCertificate:
     """The distance of two surfaces, with its certificate.
 
     Parameters
     ----------
-    first, second : Placed vertices
+    first, second : PlacedPoints vertices
     faces, other_faces : (f, k) int arrays, the corners of each triangle, or of other convex parts
     """
     one, other, unit = world_points(first, second)

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from harness.compare.certificate import Certificate
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import DistanceCertificate, hull_distance, root, surface_distance
 from harness.compare.judge import judge
 from harness.compare.poses import Pose
@@ -97,6 +97,6 @@ class ExactGap:
             "upper": root(proven.upper),
         }
 
-    def _placed(self, body: int) -> tuple[Surface, Placed]:
+    def _placed(self, body: int) -> tuple[Surface, PlacedPoints]:
         solid = self._scene.solid_of_body(body)
-        return solid, Placed(solid.vertices, self._pose.positions[body], self._pose.quaternions[body])
+        return solid, PlacedPoints(solid.vertices, self._pose.positions[body], self._pose.quaternions[body])

@@ -16,7 +16,7 @@ from harness.arrays import Floats
 from harness.compare import certificate
 from harness.compare.certificate import Judgement, distance_along
 from harness.compare.convex import CommonPoint, Plane, meet
-from harness.compare.exact import Placed, Point, Points, world_points
+from harness.compare.exact import PlacedPoints, Point, Points, world_points
 from harness.compare.surfaces import judge_surfaces
 from harness.scene.mesh import Triangles
 from harness.scene.scene import Scene
@@ -46,8 +46,8 @@ def judge(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats) 
     first, second = (scene.solid_of_body(body) for body in (i, j))
     if scene.shape == "mesh":
         return judge_surfaces(first, positions[i], quaternions[i], second, positions[j], quaternions[j])
-    placed = Placed(first.vertices, positions[i], quaternions[i])
-    other = Placed(second.vertices, positions[j], quaternions[j])
+    placed = PlacedPoints(first.vertices, positions[i], quaternions[i])
+    other = PlacedPoints(second.vertices, positions[j], quaternions[j])
     return _hulls(placed, first.faces, other, second.faces)
 
 
@@ -57,7 +57,7 @@ def touches(scene: Scene, i: int, j: int, positions: Floats, quaternions: Floats
         return judge(scene, i, j, positions, quaternions).touching
     first, second = (scene.solid_of_body(body).vertices for body in (i, j))
     one, other, _ = world_points(
-        Placed(first, positions[i], quaternions[i]), Placed(second, positions[j], quaternions[j])
+        PlacedPoints(first, positions[i], quaternions[i]), PlacedPoints(second, positions[j], quaternions[j])
     )
     found = meet(one, other)
     if not found.holds(one, other):
@@ -74,7 +74,7 @@ def _spheres(first: Sequence[float], second: Sequence[float], size: float, other
     return Judgement(excess <= 0, gap, proof)
 
 
-def _hulls(first: Placed, faces: Triangles, second: Placed, other_faces: Triangles) -> Judgement:
+def _hulls(first: PlacedPoints, faces: Triangles, second: PlacedPoints, other_faces: Triangles) -> Judgement:
     one, other, unit = world_points(first, second)
     found = meet(one, other)
     if not found.holds(one, other):

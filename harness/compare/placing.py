@@ -25,7 +25,7 @@ from harness.vocabulary import Shape
 FEATURES = ("vertex", "edge", "face")
 
 
-class Contact(NamedTuple):
+class SupportPoint(NamedTuple):
     """A point of a body, m in its own frame, and an outward direction in which no other point of it lies farther."""
 
     point: Floats
@@ -72,25 +72,25 @@ def solid_of(scene: Scene, body: int) -> Surface | None:
     return None if scene.shape == "sphere" else replace(scene, shape="hull").solid_of_body(body)
 
 
-def contact_of(solid: Surface | None, size: float, feature: str, rng: np.random.Generator) -> Contact:
+def contact_of(solid: Surface | None, size: float, feature: str, rng: np.random.Generator) -> SupportPoint:
     """A random point of a feature of a body, and the outward direction there; without a solid, of a sphere."""
     if solid is None:
         outward = random_direction(rng)
-        return Contact(outward * (size / 2), outward)
+        return SupportPoint(outward * (size / 2), outward)
     if feature == "vertex":
         outward = random_direction(rng)
-        return Contact(solid.vertices[(solid.vertices @ outward).argmax()], outward)
+        return SupportPoint(solid.vertices[(solid.vertices @ outward).argmax()], outward)
     face = int(rng.integers(len(solid.faces)))
     corners = solid.faces[face]
     if feature == "face":
-        return Contact(rng.dirichlet(np.ones(3)) @ solid.vertices[corners], face_normal(solid, face))
+        return SupportPoint(rng.dirichlet(np.ones(3)) @ solid.vertices[corners], face_normal(solid, face))
     start, end = int(corners[0]), int(corners[1])
     both = (solid.faces == start).any(axis=1) & (solid.faces == end).any(axis=1)
     neighbours = np.flatnonzero(both)
     share = rng.uniform(0.1, 0.9)
     point = share * solid.vertices[start] + (1 - share) * solid.vertices[end]
     between = face_normal(solid, int(neighbours[0])) + face_normal(solid, int(neighbours[-1]))
-    return Contact(point, between / np.linalg.norm(between))
+    return SupportPoint(point, between / np.linalg.norm(between))
 
 
 def face_normal(solid: Surface, face: int) -> Floats:

@@ -13,7 +13,7 @@ from harness.arrays import Floats, Ints
 from harness.compare import certificate
 from harness.compare.certificate import Certificate, Judgement, distance_along
 from harness.compare.convex import CommonPoint, meet
-from harness.compare.exact import Placed, world_points
+from harness.compare.exact import PlacedPoints, world_points
 from harness.scene.mesh import Surface
 
 # By how much of the extent a float coordinate may err: many times what a rotation and a sum can lose.
@@ -47,8 +47,8 @@ def judge_surfaces(
 
     def decide(f: int, g: int) -> tuple[Certificate, float | None]:
         return _decide(
-            Placed(first.vertices[first.faces[f]], position, quaternion),
-            Placed(second.vertices[second.faces[g]], other_position, other_quaternion),
+            PlacedPoints(first.vertices[first.faces[f]], position, quaternion),
+            PlacedPoints(second.vertices[second.faces[g]], other_position, other_quaternion),
         )
 
     # what touches is found among the boxes that overlap; how far surfaces are apart needs more of them
@@ -74,7 +74,7 @@ def judge_surfaces(
     return Judgement(False, gap, proof, contained=inside)
 
 
-def _decide(first: Placed, second: Placed) -> tuple[Certificate, float | None]:
+def _decide(first: PlacedPoints, second: PlacedPoints) -> tuple[Certificate, float | None]:
     """The exact answer for two triangles: its proof, and how far they are apart, None if they share a point."""
     one, other, unit = world_points(first, second)
     found = meet(one, other)

@@ -13,7 +13,7 @@ import numpy as np
 
 from harness.arrays import Floats
 from harness.backends.protocol import NearPairs
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import hull_distance, surface_distance
 from harness.compare.poses import Pose
 from harness.scene.scene import Scene
@@ -58,8 +58,8 @@ def _outside(scene: Scene, pose: Pose, body: int, point: Floats) -> float:
     if scene.shape == "sphere":
         return float(np.linalg.norm(point - pose.positions[body])) - float(scene.bodies.radii[body])
     solid = scene.solid_of_body(body)
-    placed = Placed(solid.vertices, pose.positions[body], pose.quaternions[body])
-    alone = Placed(np.zeros((1, 3)), point, np.array([1.0, 0.0, 0.0, 0.0]))
+    placed = PlacedPoints(solid.vertices, pose.positions[body], pose.quaternions[body])
+    alone = PlacedPoints(np.zeros((1, 3)), point, np.array([1.0, 0.0, 0.0, 0.0]))
     if scene.shape == "hull":
         return hull_distance(placed, alone).gap
     return surface_distance(placed, solid.faces, alone, np.zeros((1, 3), np.int32)).gap

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Literal
 
 from harness.errors import InputError, Problem
+from harness.experiment import FOLDER
 from harness.experiment.kind import is_truth_declaration
 from harness.experiment.messages import near
-
-FOLDER = "experiments"
 
 
 def name_of(path: Path) -> str:

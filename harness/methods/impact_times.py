@@ -15,7 +15,7 @@ from harness.narrowphase.body_shapes import hulls_of_bodies, shapes_of_bodies
 from harness.narrowphase.frame_flights import FrameFlights
 from harness.narrowphase.gjk import LEAST_GAP
 from harness.narrowphase.impact_pairs import (
-    Count,
+    OnsetCount,
     Onsets,
     PairsAsked,
     hull_pair_onsets,
@@ -149,7 +149,7 @@ class KernelImpacts:
 
 
 class _Search(Protocol):
-    def __call__(self, asked: PairsAsked, flights: FrameFlights, found: Onsets) -> Count:
+    def __call__(self, asked: PairsAsked, flights: FrameFlights, found: Onsets) -> OnsetCount:
         """Search a frame."""
 
 

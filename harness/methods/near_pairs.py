@@ -19,9 +19,6 @@ from harness.narrowphase.sphere_gap_pairs import SphereGapPairs
 from harness.scene.scene import Scene
 from harness.vocabulary import Query
 
-# Relative: by how much more than a gap pairs are culled, so that rounding loses none.
-SLACK = 1e-9
-
 
 class NearFinder(Protocol):
     """Finds all pairs of a scene that are near, at given poses."""
@@ -35,12 +32,6 @@ class NearFinder(Protocol):
 
     def checked(self, found: NearPairs) -> NearPairs:
         """The answer, if it keeps to its form; asked outside of every clock."""
-
-
-def near_radii(scene: Scene, within: float) -> Floats:
-    """(n,) m: radii of spheres around the bodies that touch wherever a gap is at most `within` (m)."""
-    radii: Floats = (scene.enclosing_radii + 0.5 * within) * (1.0 + SLACK)
-    return radii
 
 
 class KernelNearPairs:

@@ -12,12 +12,13 @@ from functools import partial
 from typing import ClassVar
 
 from harness.arrays import Floats, Pairs
+from harness.backends.poses import near_radii
 from harness.broadphase.all_pairs import AllPairs
 from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
 from harness.methods.impact_times import ImpactFinder, KernelImpacts
 from harness.methods.method import Method, Pipeline, WarmUp
-from harness.methods.near_pairs import KernelNearPairs, NearFinder, near_radii
+from harness.methods.near_pairs import KernelNearPairs, NearFinder
 from harness.methods.query_pipelines import ImpactPipeline, NearPipeline
 from harness.methods.stages import Decisions, Plan
 from harness.methods.stepping import Detector, Stepping
@@ -73,7 +74,9 @@ class SteppedMethod(Method):
             If the library that it stands on is missing, or cannot hold the scene, or has no such query.
         """
         within, query = self.within or 0.0, self.name.query
-        close_pairs = asked_about(self.close_pairs_of(scene, plan, near_radii(scene, within)), scene.ignored)
+        close_pairs = asked_about(
+            self.close_pairs_of(scene, plan, near_radii(scene.enclosing_radii, within)), scene.ignored
+        )
         return KernelNearPairs(scene, close_pairs, query, within, self.tolerance)
 
     def impact_finder(self, scene: Scene, plan: Plan) -> ImpactFinder:

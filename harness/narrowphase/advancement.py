@@ -65,7 +65,7 @@ class TurnedHull(NamedTuple):
     turn: Matrix
 
 
-class Gap(NamedTuple):
+class GapNow(NamedTuple):
     """Between two hulls at an instant.
 
     Attributes
@@ -134,7 +134,7 @@ def time_of_impact(
         if time + wait <= end:
             arm_a, arm_b = turned(turn_a, found.point_a), minus(turned(turn_a, found.point_b), offset)
             one, other = TurnedHull(hull_a, a, turn_a), TurnedHull(hull_b, b, turn_b)
-            longer = open_for(one, other, Gap(axis, width, drift, arm_a, arm_b))
+            longer = open_for(one, other, GapNow(axis, width, drift, arm_a, arm_b))
             wait = longer if longer > wait else wait
         time += wait
         if step % STEPS_PER_SWEEP == 0:
@@ -145,7 +145,7 @@ def time_of_impact(
 
 
 @kernel
-def open_for(one: TurnedHull, other: TurnedHull, gap: Gap) -> float:
+def open_for(one: TurnedHull, other: TurnedHull, gap: GapNow) -> float:
     """How long a gap along an axis stays open, s, by what the hulls do at first and what their spins can change of it.
 
     A point at p from its centre moves along the axis n at p.(n x w), which changes by at most |n x w| |w x p| a second.

@@ -62,7 +62,7 @@ class Relative(NamedTuple):
     size_b: float
 
 
-class Distance(NamedTuple):
+class HullDistance(NamedTuple):
     """What is known of two hulls.
 
     Attributes
@@ -99,7 +99,7 @@ def hull_distance(
     margin: float,
     enough: float,
     tolerance: float,
-) -> Distance:
+) -> HullDistance:
     """Distance of two hulls.
 
     Parameters
@@ -114,7 +114,7 @@ def hull_distance(
 
     Returns
     -------
-    Distance
+    HullDistance
         With `upper` - `lower` within the tolerance, or rounding of 1e-14 of the distance, unless `lower` is above
         `enough`.
     """
@@ -137,7 +137,7 @@ def hull_distance(
         p3 = difference(hull_a, hull_b, pose, s3)
         simplex = Simplex(p0, p1, p2, p3, (s0, s1, s2, s3), 4)
         if depth_of_origin(p0, p1, p2, p3) > margin:
-            return Distance(PairVerdict.TOUCHING, 0.0, 0.0, nearest.point, p0, p0, simplex.vertices)
+            return HullDistance(PairVerdict.TOUCHING, 0.0, 0.0, nearest.point, p0, p0, simplex.vertices)
         other = nearest_on_tetrahedron(p0, p1, p2, p3)
         if other.corners != ALL_CORNERS and other.squared < nearest.squared:
             nearest = other
@@ -162,7 +162,7 @@ def hull_distance(
         if step.corners == ALL_CORNERS:
             inside = depth_of_origin(larger.a, larger.b, larger.c, larger.d) > margin
             verdict = PairVerdict.TOUCHING if inside else PairVerdict.UNDECIDED
-            return Distance(verdict, 0.0, 0.0, nearest.point, larger.a, larger.a, larger.vertices)
+            return HullDistance(verdict, 0.0, 0.0, nearest.point, larger.a, larger.a, larger.vertices)
         if not step.squared < squared:  # rounding ends the descent
             break
         simplex, nearest = kept(larger, step.corners), step
@@ -174,7 +174,7 @@ def hull_distance(
         point_a = plus(point_a, scaled(vertex_a(hull_a, pose, vertices >> 32), share))
         point_b = plus(point_b, scaled(vertex_b(hull_b, pose, vertices & 0xFFFFFFFF), share))
     upper = max(lower, sqrt(nearest.squared))
-    return Distance(verdict, lower, upper, best, point_a, point_b, simplex.vertices)
+    return HullDistance(verdict, lower, upper, best, point_a, point_b, simplex.vertices)
 
 
 @strict_step

@@ -87,7 +87,7 @@ class Onsets(NamedTuple):
     states: PairStates
 
 
-class Count(NamedTuple):
+class OnsetCount(NamedTuple):
     """How many onsets there are, which may be more than there is room for, and how many pairs were given up."""
 
     onsets: int
@@ -136,19 +136,19 @@ class Followed(NamedTuple):
 
 
 @kernel
-def sphere_pair_onsets(asked: PairsAsked, flights: FrameFlights, found: Onsets) -> Count:
+def sphere_pair_onsets(asked: PairsAsked, flights: FrameFlights, found: Onsets) -> OnsetCount:
     """All onsets of spheres."""
     return pair_onsets(asked, flights, 0, found, spheres_in_piece)
 
 
 @kernel
-def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hulls: Hulls, found: Onsets) -> Count:
+def hull_pair_onsets(asked: PairsAsked, flights: FrameFlights, hulls: Hulls, found: Onsets) -> OnsetCount:
     """All onsets of bodies that have these hulls."""
     return pair_onsets(asked, flights, hulls, found, hulls_in_piece)
 
 
 @kernel
-def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shapes: Shapes, found: Onsets) -> Count:
+def mesh_pair_onsets(asked: PairsAsked, flights: FrameFlights, shapes: Shapes, found: Onsets) -> OnsetCount:
     """All onsets of bodies that have these surfaces."""
     return pair_onsets(asked, flights, shapes, found, surfaces_in_piece)
 
@@ -160,7 +160,7 @@ def pair_onsets(
     solids: Solids,
     found: Onsets,
     in_piece: Callable[[Solids, NumberedPair, Motion, Motion, Piece, Followed, Onsets], Followed],
-) -> Count:
+) -> OnsetCount:
     """The onsets of all pairs, in order, given what follows a pair of the solids through a straight piece."""
     count, given_up, place = 0, 0, 0
     pair = pair_flight()
@@ -194,7 +194,7 @@ def pair_onsets(
             now += wait
             state = at_turn(state)
         keep(found.states, k, key, later(state, wait))
-    return Count(count, given_up)
+    return OnsetCount(count, given_up)
 
 
 @inner

@@ -36,7 +36,7 @@ from harness.narrowphase.motion_bounds import (
     until_triangles_touch,
 )
 from harness.narrowphase.node_queue import drop_earliest, earliest, enqueue, larger, node_queue
-from harness.narrowphase.slab_advancement import MOST_WINDOWS, empty_cap, empty_pairs, near_pairs, slab_of
+from harness.narrowphase.slab_advancement import MOST_WINDOWS, empty_cap, empty_pairs, near_leaves, slab_of
 from harness.narrowphase.spheres import passage
 from harness.narrowphase.support import SupportMap, support_map
 from harness.narrowphase.tree_pairs import DEPTH, NO_NODES, NodePair, Trees, halves, push_near
@@ -244,7 +244,7 @@ def touch_in_slabs(
     for _ in range(MOST_WINDOWS):
         at = instant_of(flight, now)
         slab = slab_of(hull_a, hull_b, trees, at, axis, end - now, cap_a, cap_b)
-        count = near_pairs(trees, at, slab, cap_a, cap_b, pairs) if min(slab.count_a, slab.count_b) >= 0 else -1
+        count = near_leaves(trees, at, slab, cap_a, cap_b, pairs) if min(slab.count_a, slab.count_b) >= 0 else -1
         if count < 0:
             break
         first = FirstTouch(SearchVerdict.NEVER, min(end, now + slab.length), 0.0, axis, NO_NODES, steps)

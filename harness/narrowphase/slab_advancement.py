@@ -76,7 +76,7 @@ class Slab(NamedTuple):
     count_b: int
 
 
-class NearPairs(NamedTuple):
+class NearLeaves(NamedTuple):
     """Room for pairs of triangles, as leaves, and of each how long they certainly stay apart, s.
 
     And for the spheres around the triangles of the second cap, (4, ROOM): centres, seen from body a, and radii.
@@ -88,9 +88,9 @@ class NearPairs(NamedTuple):
 
 
 @kernel
-def empty_pairs() -> NearPairs:
+def empty_pairs() -> NearLeaves:
     """Uninitialised."""
-    return NearPairs(np.empty((MOST_PAIRS, 2), np.int64), np.empty(MOST_PAIRS), np.empty((4, ROOM)))
+    return NearLeaves(np.empty((MOST_PAIRS, 2), np.int64), np.empty(MOST_PAIRS), np.empty((4, ROOM)))
 
 
 @kernel
@@ -147,7 +147,7 @@ def slab_of(
 
 
 @kernel
-def near_pairs(trees: Trees, at: Instant, slab: Slab, cap_a: Cap, cap_b: Cap, found: NearPairs) -> int:
+def near_leaves(trees: Trees, at: Instant, slab: Slab, cap_a: Cap, cap_b: Cap, found: NearLeaves) -> int:
     """The pairs of triangles of two caps that may touch in the window, written; how many, -1 if there is no room.
 
     The one whose triangles come lowest together stands first.

@@ -18,7 +18,7 @@ from trimesh.creation import icosphere
 from harness.arrays import Floats
 from harness.replay.document import start_positions, view_box
 from harness.replay.kept_still import HEIGHT, WIDTH
-from harness.store.recording import Recording, Surface
+from harness.store.recording import RecordedMesh, Recording
 
 _OVERSAMPLING = 2  # painted at so many times the size
 _MOST_TRIANGLES = 24_000
@@ -116,7 +116,7 @@ def _corners(recording: Recording) -> Floats:
     return np.concatenate(found)
 
 
-def _form(recording: Recording, surface: Surface | None) -> tuple[Floats, NDArray[Any]]:
+def _form(recording: Recording, surface: RecordedMesh | None) -> tuple[Floats, NDArray[Any]]:
     """Vertices and faces of one body of diameter 1, so coarse that all bodies together can be painted."""
     most = max(20, _MOST_TRIANGLES // len(recording))
     if surface is None:

@@ -95,10 +95,10 @@ class FigureSource:
     place: float = 50.0
 
 
-def name_of(*parts: str) -> str:
+def figure_name(*parts: str) -> str:
     """These as the name of a figure, without what neither an id nor the name of a file may have; empty ones left out.
 
-    >>> name_of("atlas", "", "hull of cow.obj")
+    >>> figure_name("atlas", "", "hull of cow.obj")
     'atlas-hull-of-cow-obj'
     """
     return re.sub(r"[^\w-]+", "-", "-".join(filter(None, parts)))

@@ -24,10 +24,10 @@ def axis_title(metric: str, unit: Scale) -> str:
     return f"{metric}, {unit.symbol}" if unit.symbol else metric
 
 
-def interval_text(found: Summary, unit: Scale) -> str:
+def median_text(found: Summary, unit: Scale) -> str:
     """A median with its interval, or its range, for one point.
 
-    >>> interval_text(Summary(2.0, 1.5, 3.0, 0.9375, 5), Scale(1.0, "s")).replace("\u00a0", " ")
+    >>> median_text(Summary(2.0, 1.5, 3.0, 0.9375, 5), Scale(1.0, "s")).replace("\u00a0", " ")
     '2 s (interval 1.50 to 3 s)'
     """
     text = unit.with_unit(found.median)

@@ -13,7 +13,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 @dataclass(frozen=True)
-class Stage:
+class StageRow:
     """One stage with what became of it, and the points it is so for."""
 
     name: str
@@ -22,7 +22,7 @@ class Stage:
     where: str
 
 
-def stages(arrangement: Arrangement) -> list[Stage]:
+def stages(arrangement: Arrangement) -> list[StageRow]:
     """Every stage in the order of the pipeline; one that differs between points appears once for each way it goes.
 
     Reasons that differ in their numbers only are one way: "all 10 … 780 pairs".
@@ -34,7 +34,7 @@ def stages(arrangement: Arrangement) -> list[Stage]:
             way = (bool(stage["kept"]), _NUMBER.sub("#", why))
             order.setdefault(str(stage["name"]), {}).setdefault(way, []).append((point.row.key, why))
     return [
-        Stage(name, kept, _merged([why for _, why in points]), _where(arrangement, [key for key, _ in points]))
+        StageRow(name, kept, _merged([why for _, why in points]), _where(arrangement, [key for key, _ in points]))
         for name, ways in order.items()
         for (kept, _), points in ways.items()
     ]

@@ -24,7 +24,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Group:
+class ColumnGroup:
     """A heading above several columns; without a title, a gap."""
 
     title: str
@@ -71,7 +71,7 @@ class Table:
     note: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[Entry, ...], ...]
-    groups: tuple[Group, ...] = ()
+    groups: tuple[ColumnGroup, ...] = ()
 
 
 def words(text: str, style: int | None = None, flag: str = "") -> Entry:

@@ -15,7 +15,7 @@ from harness.motion.reach import all_at_rest
 from harness.runner.contact_points import contact_points
 from harness.runner.point import is_stepped, law_of
 from harness.scene.scene import Scene
-from harness.store.recording import NearLines, Recording, Surface
+from harness.store.recording import NearLines, RecordedMesh, Recording
 from harness.store.records import RunRecord
 
 # A sweep records a scene of at most this many bodies, hits and lines between near bodies, whose run took at most this
@@ -47,7 +47,7 @@ def recording_of(point: Point, scene: Scene, outcome: Outcome) -> Recording:
         sizes=bodies.sizes,
         quaternions=bodies.quaternions,
         spins=bodies.spins,
-        surfaces=tuple(Surface(mesh.name, mesh.digest, mesh.vertices, mesh.faces) for mesh in shown),
+        surfaces=tuple(RecordedMesh(mesh.name, mesh.digest, mesh.vertices, mesh.faces) for mesh in shown),
         surface_of=scene.mesh_of,
         leg_times=course.times,
         leg_bodies=course.bodies,

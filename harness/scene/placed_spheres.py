@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.arrays import Floats
 from harness.kernel import inner, kernel
 from harness.prefetch import prefetch
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Indices = NDArray[np.int32]
 Bits = NDArray[np.uint64]
@@ -42,7 +42,7 @@ SPHERE = np.dtype(
 )
 
 
-class Placed(NamedTuple):
+class PlacedSpheres(NamedTuple):
     """Spheres of which some are placed.
 
     Attributes
@@ -94,7 +94,7 @@ class Grid(NamedTuple):
     first: int
 
 
-def none_placed(radii: Floats, half: Floats) -> Placed:
+def none_placed(radii: Floats, half: Floats) -> PlacedSpheres:
     """Of spheres with these radii (n,), m, the largest first, in a box with these halves of its sides (3,), m."""
     count = len(radii)
     _, levels = np.unique(np.floor(np.log2(radii[0] / radii)), return_inverse=True)
@@ -104,7 +104,7 @@ def none_placed(radii: Floats, half: Floats) -> Placed:
     ends = np.cumsum(cells.prod(axis=1))
     spheres = np.zeros(count, SPHERE)
     spheres["radius"] = radii
-    return Placed(
+    return PlacedSpheres(
         spheres=spheres,
         radii=radii,
         half=half,
@@ -127,7 +127,7 @@ def _cells(diameter: float, count: int, half: Floats) -> Integers:
 
 
 @inner
-def grid_of(placed: Placed, level: int) -> Grid:
+def grid_of(placed: PlacedSpheres, level: int) -> Grid:
     """The grid of a level."""
     x, y, z = placed.half[0], placed.half[1], placed.half[2]
     nx, ny, nz = placed.cells[level, 0], placed.cells[level, 1], placed.cells[level, 2]
@@ -146,7 +146,7 @@ def grid_of(placed: Placed, level: int) -> Grid:
 
 
 @inner
-def put(placed: Placed, body: int, place: Place) -> None:
+def put(placed: PlacedSpheres, body: int, place: Place) -> None:
     """Put a sphere at a place where no other is in its way."""
     level = placed.levels[body]
     grid = grid_of(placed, level)
@@ -196,7 +196,7 @@ def voxel_of(grid: Grid, place: Place) -> tuple[int, int]:
 
 
 @inner
-def is_free(placed: Placed, body: int, place: Place, near: Indices) -> bool:
+def is_free(placed: PlacedSpheres, body: int, place: Place, near: Indices) -> bool:
     """Whether no sphere that is placed overlaps this one at this place; (27,) `near` is written."""
     for share in SHARES:
         for level in range(placed.levels[body] + 1):
@@ -212,7 +212,7 @@ SHARES = (0.0, 1.0)
 
 
 @inner
-def gather(placed: Placed, grid: Grid, place: Place, reach: float, near: Indices) -> int:
+def gather(placed: PlacedSpheres, grid: Grid, place: Place, reach: float, near: Indices) -> int:
     """Write the sphere placed last in each cell within reach of a place, m, where there is one; returns how many."""
     x, y, z = place[0] + grid.x, place[1] + grid.y, place[2] + grid.z
     from_y, to_y = along((y - reach) * grid.per_y, grid.ny), along((y + reach) * grid.per_y, grid.ny)
@@ -228,7 +228,7 @@ def gather(placed: Placed, grid: Grid, place: Place, reach: float, near: Indices
 
 
 @inner
-def overlaps(placed: Placed, last: Indices, place: Place, radius: float) -> bool:
+def overlaps(placed: PlacedSpheres, last: Indices, place: Place, radius: float) -> bool:
     """Whether one of these spheres, or of those placed before in their cells, overlaps one at a place."""
     for other in last:
         while other >= 0:
@@ -250,12 +250,12 @@ def along(coordinate: float, cells: int) -> int:
 
 
 @kernel
-def not_taken(placed: Placed, body: int, draws: Floats, left: Integers) -> int:
+def not_taken(placed: PlacedSpheres, body: int, draws: Floats, left: Integers) -> int:
     """Which of a few draws no bit refuses; what a search for these reads is in the caches soon after.
 
     Parameters
     ----------
-    placed : Placed
+    placed : PlacedSpheres
     body : the sphere to place first
     draws : (m, 3), as of `place_of`
     left : (m,) written with their numbers, in order
@@ -282,7 +282,7 @@ def not_taken(placed: Placed, body: int, draws: Floats, left: Integers) -> int:
 
 
 @inner
-def prefetch_around(placed: Placed, grid: Grid, cells: Integers, left: Integers) -> None:
+def prefetch_around(placed: PlacedSpheres, grid: Grid, cells: Integers, left: Integers) -> None:
     """Prefetch what will be searched for some of the draws, of which the cells are given: most of it was waiting."""
     for k in left:
         for row in range(9):
@@ -295,7 +295,7 @@ def prefetch_around(placed: Placed, grid: Grid, cells: Integers, left: Integers)
 
 
 @inner
-def place_of(placed: Placed, draw: Floats, radius: float) -> Place:
+def place_of(placed: PlacedSpheres, draw: Floats, radius: float) -> Place:
     """Where three uniform numbers put a sphere, m."""
     x, y, z = max(placed.half[0] - radius, 0.0), max(placed.half[1] - radius, 0.0), max(placed.half[2] - radius, 0.0)
     return (2 * draw[0] - 1) * x, (2 * draw[1] - 1) * y, (2 * draw[2] - 1) * z

@@ -8,12 +8,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from harness.arrays import Floats
 from harness.kernel import kernel
-from harness.scene.placed_spheres import Placed, is_free, none_placed, not_taken, place_of, put
-
-Floats = NDArray[np.float64]
+from harness.scene.placed_spheres import PlacedSpheres, is_free, none_placed, not_taken, place_of, put
 
 # Up to so many spheres, and up to this packing, are placed without a kernel, which would take longer to load.
 FEW, LOOSE = 1000, 0.3
@@ -51,7 +49,7 @@ def add_at_random(radii: Floats, half: Floats, rng: np.random.Generator) -> Floa
     return np.array(placed.spheres["position"][:done])
 
 
-def _add_few(done: int, placed: Placed, draws: Floats) -> int:
+def _add_few(done: int, placed: PlacedSpheres, draws: Floats) -> int:
     """As `_add`, to the bit: some draws at once against all spheres that are placed, more where few are free."""
     positions, radii, half = placed.spheres["position"], placed.radii, placed.half
     at_once = _AT_ONCE[0]
@@ -75,7 +73,7 @@ _AT_ONCE = (16, 256)
 
 
 @kernel
-def _add(done: int, placed: Placed, draws: Floats) -> int:
+def _add(done: int, placed: PlacedSpheres, draws: Floats) -> int:
     """Place spheres from `done` on with (m, 3) uniform draws until either are used up; returns how many are placed."""
     left, near = np.empty(TOGETHER, np.int64), np.empty(27, np.int32)
     for begin in range(0, len(draws), TOGETHER):

@@ -104,6 +104,8 @@ def as_input_error(path: Path) -> Iterator[None]:
         raise
     except sqlite3.Error as error:
         raise InputError(f"{path}: {_sentence(str(error))}") from error
+    except UnicodeDecodeError as error:  # what SQLite says of a damaged schema has the damage in it
+        raise InputError(f"{path}: {_sentence('malformed')}") from error
 
 
 def _sentence(message: str) -> str:

@@ -24,7 +24,7 @@ from harness.store.history import reading
 from harness.vocabulary import WALLS
 
 
-class Surface(NamedTuple):
+class RecordedMesh(NamedTuple):
     """A mesh whose bounding sphere has its centre at the origin and diameter 1.
 
     Parameters
@@ -84,7 +84,7 @@ class Recording:
     sizes: Floats
     quaternions: Floats
     spins: Floats
-    surfaces: tuple[Surface, ...]
+    surfaces: tuple[RecordedMesh, ...]
     surface_of: Ints
     leg_times: Floats
     leg_bodies: Ints
@@ -281,10 +281,10 @@ def _near_lines(packed: Mapping[str, str]) -> NearLines:
     )
 
 
-def _surface(connection: sqlite3.Connection, digest: str) -> Surface:
+def _surface(connection: sqlite3.Connection, digest: str) -> RecordedMesh:
     name, vertices, faces = connection.execute(
         "SELECT name, vertices, faces FROM mesh WHERE digest = ?", (digest,)
     ).fetchone()
-    return Surface(
+    return RecordedMesh(
         name, digest, np.frombuffer(vertices, "<f8").reshape(-1, 3), np.frombuffer(faces, "<i4").reshape(-1, 3)
     )

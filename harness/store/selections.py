@@ -15,7 +15,7 @@ EXPERIMENT_OF_POINT = (
 """The name of an experiment that lists the point of a row now, NULL where none does."""
 
 
-def metrics_of(connection: sqlite3.Connection, runs: Iterable[int]) -> dict[int, dict[str, float]]:
+def metrics_by_run(connection: sqlite3.Connection, runs: Iterable[int]) -> dict[int, dict[str, float]]:
     """By the number of a run its metrics, as they were written; NaN is one that is no number."""
     metrics: dict[int, dict[str, float]] = defaultdict(dict)
     for run, name, value in connection.execute(

@@ -9,7 +9,7 @@ from pathlib import Path
 from harness.store.connection import as_input_error
 from harness.store.history import reading
 from harness.store.records import RunRecord, VerdictKind
-from harness.store.selections import EXPERIMENT_OF_POINT, metrics_of
+from harness.store.selections import EXPERIMENT_OF_POINT, metrics_by_run
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def snapshot(path: str | Path, sweep: int) -> Snapshot:
             "WHERE run.id IN (SELECT max(id) FROM run WHERE sweep <= ? GROUP BY point, repeat) ORDER BY run.id",
             (sweep,),
         ).fetchall()
-        metrics = metrics_of(connection, [run for run, *_ in rows])
+        metrics = metrics_by_run(connection, [run for run, *_ in rows])
         controls = {
             (key, repeat): json.loads(clocks)
             for key, repeat, clocks in connection.execute(

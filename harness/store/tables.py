@@ -23,7 +23,7 @@ from harness.store.records import (
     VerdictKind,
     VerdictRow,
 )
-from harness.store.selections import metrics_of
+from harness.store.selections import metrics_by_run
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,7 +94,7 @@ def run_records(path: str | Path, experiments: Iterable[str] | None = None) -> l
             "WHERE name IN (SELECT value FROM json_each(?)) ORDER BY name, place, repeat",
             (json.dumps(chosen),),
         ).fetchall()
-        metrics = metrics_of(connection, [run for run, *_ in rows])
+        metrics = metrics_by_run(connection, [run for run, *_ in rows])
     points = {key: json.loads(parameters) for _, _, key, parameters, *_ in rows}
     return [
         RunRecord(

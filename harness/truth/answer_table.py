@@ -8,26 +8,26 @@ from typing import Any
 
 from harness.backends.registry import packages
 from harness.measure.machine import package_versions, source_commit
-from harness.truth.answerers import Question
-from harness.truth.verdict import VERDICTS, Count, Verdicts
+from harness.truth.answerers import AskedEngine
+from harness.truth.verdict import VERDICTS, FamilyCount, Verdicts
 
 _HEADS = ("backend", "family", "asked", *VERDICTS, "latest", "earliest", "time a query")
 
-Asked = Mapping[Question, Verdicts]
+Asked = Mapping[AskedEngine, Verdicts]
 
 
 def table(asked: Asked) -> str:
     """A line a backend and family, and one for all families."""
     rows = [_HEADS]
     notes = []
-    for question, verdicts in asked.items():
+    for engine, verdicts in asked.items():
         if verdicts.problem:
-            notes.append(f"{question.label}: not asked: {verdicts.problem}")
+            notes.append(f"{engine.label}: not asked: {verdicts.problem}")
             continue
-        rows += [_row(question.label, family, count) for family, count in verdicts.named().items()]
-        notes += [f"{question.label}: {cases} cases failed: {why}" for why, cases in verdicts.failures.items()]
+        rows += [_row(engine.label, family, count) for family, count in verdicts.named().items()]
+        notes += [f"{engine.label}: {cases} cases failed: {why}" for why, cases in verdicts.failures.items()]
         if without := verdicts.total().without:
-            notes.append(f"{question.label}: {without} cases are of shapes that it does not have, and were not asked")
+            notes.append(f"{engine.label}: {without} cases are of shapes that it does not have, and were not asked")
     widths = [max(len(row[column]) for row in rows) for column in range(len(_HEADS))]
     lines = ["  ".join(_aligned(cell, width, k) for k, (cell, width) in enumerate(zip(row, widths, strict=True)))
              for row in rows]  # fmt: skip
@@ -37,13 +37,13 @@ def table(asked: Asked) -> str:
 def document(asked: Asked, folder: str, within: float, every: int) -> dict[str, Any]:
     """For JSON: times in s, and what of the machine they depend on."""
     asking = _asking(folder, within, every)
-    return asking | {"backends": [_answers(question, verdicts) for question, verdicts in asked.items()]}
+    return asking | {"backends": [_answers(engine, verdicts) for engine, verdicts in asked.items()]}
 
 
 def documents(asked: Asked, folder: str, within: float, every: int) -> dict[str, dict[str, Any]]:
     """What is kept in a database, by who was asked."""
     asking = _asking(folder, within, every)
-    return {question.label: {"truth": asking | _answers(question, verdicts)} for question, verdicts in asked.items()}
+    return {engine.label: {"truth": asking | _answers(engine, verdicts)} for engine, verdicts in asked.items()}
 
 
 def _asking(folder: str, within: float, every: int) -> dict[str, Any]:
@@ -56,17 +56,17 @@ def _asking(folder: str, within: float, every: int) -> dict[str, Any]:
     }
 
 
-def _answers(question: Question, verdicts: Verdicts) -> dict[str, Any]:
+def _answers(engine: AskedEngine, verdicts: Verdicts) -> dict[str, Any]:
     return {
-        "backend": question.name,
-        "dt": question.dt or None,
+        "backend": engine.name,
+        "dt": engine.dt or None,
         "problem": verdicts.problem or None,
         "failures": verdicts.failures,
         "families": {family: count.document() for family, count in verdicts.named().items()},
     }
 
 
-def _row(label: str, family: str, count: Count) -> tuple[str, ...]:
+def _row(label: str, family: str, count: FamilyCount) -> tuple[str, ...]:
     seconds = f"{median(count.seconds) * 1e3:.3g} ms" if count.seconds else "-"
     out = (f"{time:.2g} s" if time > 0.0 else "-" for time in (count.latest, count.earliest))
     return (label, family, str(count.asked), *(str(count.verdicts[verdict]) for verdict in VERDICTS), *out, seconds)

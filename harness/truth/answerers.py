@@ -34,7 +34,7 @@ class Answer(NamedTuple):
     tolerance: float
 
 
-class Question(NamedTuple):
+class AskedEngine(NamedTuple):
     """Who is asked.
 
     Attributes
@@ -61,7 +61,7 @@ class Answerer(Protocol):
         """What it tells of a case; None where it has no such shape. May raise whatever a library does."""
 
 
-def questions(names: list[str], steps: list[float]) -> list[Question]:
+def asked_engines(names: list[str], steps: list[float]) -> list[AskedEngine]:
     """Who is asked, from what a person named.
 
     Raises
@@ -73,7 +73,7 @@ def questions(names: list[str], steps: list[float]) -> list[Question]:
     for name in names:
         backend, algorithm = PipelineName.read(name)
         if name == OWN:
-            found.append(Question(name, "", 0.0))
+            found.append(AskedEngine(name, "", 0.0))
             continue
         if backend not in registry.names():
             raise InputError(f'there is no backend "{name}"; there are {OWN}, {", ".join(registry.names())}')
@@ -84,24 +84,24 @@ def questions(names: list[str], steps: list[float]) -> list[Question]:
                 f"library itself says that bodies meet, or {backend}/{alone.algorithm} for its test, frame by frame"
             )
         if algorithm is not None or not _says_when(backend):
-            found += [Question(name, backend, dt) for dt in steps]
+            found += [AskedEngine(name, backend, dt) for dt in steps]
         else:
-            found.append(Question(name, backend, 0.0))
+            found.append(AskedEngine(name, backend, 0.0))
     return found
 
 
-def answerer(question: Question, scenes: CaseScenes) -> Answerer:
-    """Who answers a question.
+def answerer(engine: AskedEngine, scenes: CaseScenes) -> Answerer:
+    """Who answers for an engine.
 
     Raises
     ------
     InputError
         If its library is missing.
     """
-    if not question.backend:
+    if not engine.backend:
         return _Engine(scenes)
-    registry.create(question.backend)
-    return _Asked(question, scenes)
+    registry.create(engine.backend)
+    return _Asked(engine, scenes)
 
 
 def _says_when(name: str) -> bool:
@@ -134,21 +134,21 @@ class _Engine:
 class _Asked:
     """A backend, loaded once for all cases of a kind that follow each other."""
 
-    def __init__(self, question: Question, scenes: CaseScenes) -> None:
-        self._question, self._scenes = question, scenes
+    def __init__(self, engine: AskedEngine, scenes: CaseScenes) -> None:
+        self._asked, self._scenes = engine, scenes
         self._kind: Kind | None = None
         self._backend: Backend | None = None
 
     def answer(self, row: int) -> Answer | None:
         shape, kind = self._scenes.shape(row), self._scenes.kind(row)
         if kind != self._kind or self._backend is None:
-            self._kind, self._backend = kind, registry.create(self._question.backend)
+            self._kind, self._backend = kind, registry.create(self._asked.backend)
             if shape not in self._backend.shapes:
                 self._kind = None
                 return None
             self._backend.load(self._scenes.scene(row))
         tolerance = self._backend.tolerance(shape) * sum(kind.sizes) / 2.0
-        told = self._stepped(self._backend, row) if self._question.dt else self._said(self._backend, row)
+        told = self._stepped(self._backend, row) if self._asked.dt else self._said(self._backend, row)
         return Answer(*told, tolerance)
 
     def _said(self, backend: Backend, row: int) -> tuple[float, float]:
@@ -178,7 +178,7 @@ class _Asked:
 
     def _stepped(self, backend: Backend, row: int) -> tuple[float, float]:
         """The first frame that sees them touch, and what all frames up to it took; the last one is the window's end."""
-        motion, dt = self._scenes.motion(row), self._question.dt
+        motion, dt = self._scenes.motion(row), self._asked.dt
         frames = [*(np.arange(math.ceil(motion.duration / dt)) * dt).tolist(), motion.duration]
         seconds = 0.0
         for time in frames:

@@ -11,7 +11,7 @@ import numpy as np
 from harness.arrays import Ints
 from harness.backends.statement import missing
 from harness.child_process import Channel, Child, guarded
-from harness.truth.answerers import Answer, Question, answerer
+from harness.truth.answerers import Answer, AskedEngine, answerer
 from harness.truth.case_scene import CaseScenes
 from harness.truth.folder import TruthSet
 from harness.truth.verdict import Verdicts
@@ -27,14 +27,14 @@ def chosen(given: TruthSet, families: list[str], every: int) -> Ints:
 
 
 def ask(
-    given: TruthSet, question: Question, rows: Ints, within: float, timeout: float, progress: Callable[[str], None]
+    given: TruthSet, engine: AskedEngine, rows: Ints, within: float, timeout: float, progress: Callable[[str], None]
 ) -> Verdicts:
     """Ask about some cases.
 
     Parameters
     ----------
     given : TruthSet
-    question : Question
+    engine : AskedEngine
     rows : (k,) int array, which cases
     within : s, by which a time may be out of its bounds whatever the tolerance is
     timeout : s that a case may take, before the process is ended and the case counted as failed
@@ -42,27 +42,27 @@ def ask(
     """
     scenes = CaseScenes(given)
     verdicts = Verdicts(given.cases, scenes, within)
-    if question.backend and (why := missing(question.backend)) is not None:
-        progress(f"{question.label}: {why}")
+    if engine.backend and (why := missing(engine.backend)) is not None:
+        progress(f"{engine.label}: {why}")
         verdicts.problem = why
         return verdicts
     ordered = sorted(rows.tolist(), key=scenes.kind)
-    for done, (row, answer) in enumerate(_answers(question, scenes, ordered, timeout), 1):
+    for done, (row, answer) in enumerate(_answers(engine, scenes, ordered, timeout), 1):
         verdicts.add(row, answer)
         if isinstance(answer, str) and verdicts.failures[answer] == 1:
-            progress(f"{question.label}: cases.csv:{given.lines[row]}: {answer}")
+            progress(f"{engine.label}: cases.csv:{given.lines[row]}: {answer}")
         if done % _TOLD_EVERY == 0 or done == len(ordered):
-            progress(f"{question.label}: {done} of {len(ordered)} cases")
+            progress(f"{engine.label}: {done} of {len(ordered)} cases")
     return verdicts
 
 
 def _answers(
-    question: Question, scenes: CaseScenes, rows: list[int], timeout: float
+    engine: AskedEngine, scenes: CaseScenes, rows: list[int], timeout: float
 ) -> Iterator[tuple[int, Answer | str | None]]:
     """Each case with what was told of it, or why nothing was; a process that fails is started anew behind its case."""
     place = 0
     while place < len(rows):
-        with Child.fork(guarded(partial(_serve, question, scenes, rows[place:]))) as child:
+        with Child.fork(guarded(partial(_serve, engine, scenes, rows[place:]))) as child:
             while place < len(rows):
                 message = child.receive(timeout)
                 row, place = rows[place], place + 1
@@ -74,8 +74,8 @@ def _answers(
                 break
 
 
-def _serve(question: Question, scenes: CaseScenes, rows: list[int], channel: Channel) -> None:
-    asked = answerer(question, scenes)
+def _serve(engine: AskedEngine, scenes: CaseScenes, rows: list[int], channel: Channel) -> None:
+    asked = answerer(engine, scenes)
     for row in rows:
         answer: Answer | str | None
         try:

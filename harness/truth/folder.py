@@ -109,18 +109,18 @@ def cases_text(cases: Cases, solids: Solids) -> str:
             numbers = [side.sizes[place]]
             for column in (side.positions, side.quaternions, side.velocities, side.spins):
                 numbers += column[place].tolist()
-            row += [solids.all[side.meshes[place]].mesh, *map(number_text, numbers)]
+            row += [solids.all[side.meshes[place]].mesh, *map(shortest_text, numbers)]
         never = bool(np.isinf(cases.upper[place]))
-        row += [number_text(cases.windows[place]), number_text(cases.lower[place])]
-        row += ["", NEVER] if never else [number_text(cases.upper[place]), TOUCHES]
+        row += [shortest_text(cases.windows[place]), shortest_text(cases.lower[place])]
+        row += ["", NEVER] if never else [shortest_text(cases.upper[place]), TOUCHES]
         writer.writerow(row)
     return out.getvalue()
 
 
-def number_text(number: float) -> str:
+def shortest_text(number: float) -> str:
     """The shortest text that gives the same float.
 
-    >>> number_text(2.0), number_text(0.1), number_text(-0.0), number_text(1e-7)
+    >>> shortest_text(2.0), shortest_text(0.1), shortest_text(-0.0), shortest_text(1e-7)
     ('2', '0.1', '0', '1e-07')
     """
     return repr(float(number) + 0.0).removesuffix(".0")
@@ -128,7 +128,7 @@ def number_text(number: float) -> str:
 
 def obj_text(surface: Surface) -> str:
     """A surface as an OBJ file."""
-    lines = ["v " + " ".join(map(number_text, vertex)) for vertex in surface.vertices.tolist()]
+    lines = ["v " + " ".join(map(shortest_text, vertex)) for vertex in surface.vertices.tolist()]
     lines += ["f " + " ".join(str(corner + 1) for corner in face) for face in surface.faces.tolist()]
     return "\n".join([*lines, ""])
 

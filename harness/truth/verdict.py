@@ -23,7 +23,7 @@ VERDICTS: tuple[Verdict, ...] = ("right", "missed", "late", "early", "false", "f
 
 
 @dataclass
-class Count:
+class FamilyCount:
     """What was found of one family.
 
     Parameters
@@ -75,13 +75,13 @@ class Verdicts:
 
     def __init__(self, cases: Cases, scenes: CaseScenes, within: float) -> None:
         self._cases, self._scenes, self._within = cases, scenes, within
-        self.counts: dict[str, Count] = {}
+        self.counts: dict[str, FamilyCount] = {}
         self.problem = ""
         self.failures: dict[str, int] = {}
 
     def add(self, row: int, answer: Answer | str | None) -> None:
         """Count what was told of a case: an answer, why there is none, or None where it has no such shape."""
-        count = self.counts.setdefault(str(self._cases.families[row]), Count())
+        count = self.counts.setdefault(str(self._cases.families[row]), FamilyCount())
         if answer is None:
             count.without += 1
             return
@@ -96,9 +96,9 @@ class Verdicts:
             count.latest = max(count.latest, answer.time - upper)
             count.earliest = max(count.earliest, float(self._cases.lower[row]) - answer.time)
 
-    def total(self) -> Count:
+    def total(self) -> FamilyCount:
         """Of all families."""
-        whole = Count()
+        whole = FamilyCount()
         for count in self.counts.values():
             for verdict in VERDICTS:
                 whole.verdicts[verdict] += count.verdicts[verdict]
@@ -107,7 +107,7 @@ class Verdicts:
             whole.without += count.without
         return whole
 
-    def named(self) -> Mapping[str, Count]:
+    def named(self) -> Mapping[str, FamilyCount]:
         """By family, in the order of the set, and of all of them."""
         ordered = dict.fromkeys(self._cases.families.tolist())
         return {**{name: self.counts[name] for name in ordered if name in self.counts}, "all": self.total()}

@@ -10,7 +10,7 @@ import pytest
 from harness.backends import registry
 from harness.backends.contract import require_gaps
 from harness.backends.protocol import Near, own_hulls, queries, set_accuracy
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import hull_distance, surface_distance
 from harness.scene.box import Box
 from harness.scene.scene import Scene
@@ -60,7 +60,7 @@ def true_gap(scene, i, j):
         return max(0.0, between - (bodies.sizes[i] + bodies.sizes[j]) / 2)
     solids = [scene.solid_of(bodies.sizes[k]) for k in (i, j)]
     one, other = (
-        Placed(solid.vertices, bodies.positions[k], bodies.quaternions[k])
+        PlacedPoints(solid.vertices, bodies.positions[k], bodies.quaternions[k])
         for k, solid in zip((i, j), solids, strict=True)
     )
     if scene.shape == "hull":

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import hull_distance, surface_distance
 from tests.compare.plain_distances import hulls, triangles
 
@@ -55,7 +55,7 @@ def wrong_pairs(count, seed=0):
     for k in range(count):
         form = FORMS[k % len(FORMS)]
         one, other = pair_of_triangles(rng, form)
-        first, second = Placed(one, np.zeros(3), STRAIGHT), Placed(other, np.zeros(3), STRAIGHT)
+        first, second = PlacedPoints(one, np.zeros(3), STRAIGHT), PlacedPoints(other, np.zeros(3), STRAIGHT)
         found = surface_distance(first, face, second, face)
         found.check(first, face, second, face)
         if not found.lower == found.upper == exactly(triangles, one, other):
@@ -63,7 +63,7 @@ def wrong_pairs(count, seed=0):
         if k % 10 == 0:
             one, other = rng.normal(size=(2, 4 + k % 3, 3)) if k % 20 else rng.integers(-2, 3, (2, 5, 3)).astype(float)
             other = other + rng.uniform(0, 4, 3).round(1)
-            first, second = Placed(one, np.zeros(3), STRAIGHT), Placed(other, np.zeros(3), STRAIGHT)
+            first, second = PlacedPoints(one, np.zeros(3), STRAIGHT), PlacedPoints(other, np.zeros(3), STRAIGHT)
             found = hull_distance(first, second)
             whole = np.arange(len(one))[None]
             found.check(first, whole, second, whole)

@@ -11,7 +11,7 @@ import pytest
 
 from harness.cli.main import main
 from harness.compare import families
-from harness.compare.atlas import Cell, survey
+from harness.compare.atlas import AtlasCell, survey
 from harness.compare.budget import Budget
 from harness.compare.families import family_poses
 from harness.compare.judge import judge
@@ -120,7 +120,7 @@ def test_grazing_poses_are_as_far_apart_as_they_say():
 
 
 def test_a_rate_has_the_interval_of_clopper_and_pearson():
-    cell = Cell("a", "random", "hull", "m", verdicts=100, wrong=0)
+    cell = AtlasCell("a", "random", "hull", "m", verdicts=100, wrong=0)
     rate, low, high = cell.per_million
     assert (rate, low) == (0.0, 0.0)
     assert high == pytest.approx(1e6 * (1 - 0.025 ** (1 / 100)))

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import hull_distance, root, surface_distance
 from tests.compare.rational_distances import FORMS, STRAIGHT, wrong_pairs
 from tests.conftest import cube_mesh
@@ -25,7 +25,11 @@ def test_the_judge_finds_the_rational_distance_of_hundreds_of_pairs():
 
 def cubes(offset, seed=0):
     mesh, q = cube_mesh(), turns(np.random.default_rng(seed), 2)
-    return mesh, Placed(mesh.vertices, np.zeros(3), q[0]), Placed(mesh.vertices, np.array(offset, float), q[1])
+    return (
+        mesh,
+        PlacedPoints(mesh.vertices, np.zeros(3), q[0]),
+        PlacedPoints(mesh.vertices, np.array(offset, float), q[1]),
+    )
 
 
 def test_the_surface_of_a_convex_mesh_is_as_far_away_as_its_hull():
@@ -38,7 +42,7 @@ def test_the_surface_of_a_convex_mesh_is_as_far_away_as_its_hull():
 
 def test_cubes_face_to_face_are_as_far_apart_as_the_drawing_says():
     mesh = cube_mesh()
-    first, second = (Placed(mesh.vertices, np.array([x, 0, 0]), STRAIGHT) for x in (0.0, 2.0))
+    first, second = (PlacedPoints(mesh.vertices, np.array([x, 0, 0]), STRAIGHT) for x in (0.0, 2.0))
     assert hull_distance(first, second).gap == pytest.approx(2 - 1 / np.sqrt(3), rel=1e-15)
 
 

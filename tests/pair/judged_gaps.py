@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 
 import harness
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import hull_distance, surface_distance
 from tests.narrowphase.meshes import turns
 
@@ -81,7 +81,7 @@ def certified(a, b):
 def _parts(body):
     """Vertices in m at the pose of a body, and its convex parts."""
     solid = body.mesh.hull if body.shape == "hull" else body.mesh
-    placed = Placed(solid.vertices * body.size, body.position, body.quaternion)
+    placed = PlacedPoints(solid.vertices * body.size, body.position, body.quaternion)
     return placed, (np.arange(len(solid.vertices))[None] if body.shape == "hull" else solid.faces)
 
 

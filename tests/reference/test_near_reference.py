@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from harness.compare.exact import Placed
+from harness.compare.exact import PlacedPoints
 from harness.compare.exact_distance import hull_distance, surface_distance
 from harness.motion.answers import NearAnswers
 from harness.motion.kinematics import Trajectory
@@ -18,7 +18,7 @@ LAW, WITHIN = MotionLaw(1.0, 0.25, "none"), 0.5
 
 def exact_gap(scene, trajectory, i, j):
     one, other = (
-        Placed(scene.solid_of(1.0).vertices, trajectory.positions[k], trajectory.quaternions[k]) for k in (i, j)
+        PlacedPoints(scene.solid_of(1.0).vertices, trajectory.positions[k], trajectory.quaternions[k]) for k in (i, j)
     )
     if scene.shape == "hull":
         return hull_distance(one, other).gap

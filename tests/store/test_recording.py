@@ -8,14 +8,14 @@ import pytest
 
 from harness.errors import InputError
 from harness.store.database import Database
-from harness.store.recording import NearLines, Recording, Surface, recording_of
+from harness.store.recording import NearLines, RecordedMesh, Recording, recording_of
 from harness.store.records import PointRow
 
-TRIANGLE = Surface(
+TRIANGLE = RecordedMesh(
     "triangle", "abc", np.array([[0.5, 0, 0], [-0.25, 0.4, 0], [-0.25, -0.4, 0.1]]), np.array([[0, 1, 2]], np.int32)
 )
 
-SQUARE = Surface(
+SQUARE = RecordedMesh(
     "square",
     "def",
     np.array([[0.3, 0.3, 0], [-0.3, 0.3, 0], [-0.3, -0.3, 0], [0.3, -0.3, 0]]),

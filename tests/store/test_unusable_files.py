@@ -36,6 +36,12 @@ def truncated(path: Path) -> None:
     path.write_bytes(path.read_bytes()[:5000])
 
 
+def no_letters(path: Path) -> None:
+    """With bytes that are no UTF-8 in the SQL of a table, which SQLite repeats in what it says."""
+    Database.open(path).close()
+    path.write_bytes(path.read_bytes().replace(b"CREATE TABLE metric", b"CREATE \xf3ABLE metric"))
+
+
 def text(path: Path) -> None:
     path.write_text("dear diary, " * 500)
 
@@ -58,6 +64,7 @@ def of_version(version: int) -> Callable[[Path], None]:
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
+        (no_letters, "is damaged"),
         (corrupt, "is damaged"),
         (truncated, "is damaged"),
         (text, "is not a results database"),

@@ -16,7 +16,7 @@ from harness.compare.poses import Frame
 from harness.compare.question import Question
 from harness.compare.script import script_of
 from harness.errors import InputError
-from harness.truth.answerers import answerer, questions
+from harness.truth.answerers import answerer, asked_engines
 from harness.truth.case_scene import CaseScenes
 from harness.truth.folder import read_set
 
@@ -75,7 +75,7 @@ def written(folder: Path) -> list[str]:
     given = read_set(PUBLISHED)
     scenes, names = CaseScenes(given), []
     for name in LIBRARIES:
-        (question,) = questions([name], [])
+        (question,) = asked_engines([name], [])
         asked = answerer(question, scenes)
         for family, shape, rows in groups(given, scenes):
             found = []

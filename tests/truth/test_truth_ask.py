@@ -89,7 +89,7 @@ def hangs(time):
     ids=["true", "late", "early", "in tolerance", "missing", "always", "crashing", "hanging"],
 )
 def test_answers_are_counted_for_what_they_are(folder, monkeypatch, capsys, change, counted):
-    declared = registry.Declaration(lambda: lambda: Told(change))
+    declared = registry.DeclaredBackend(lambda: lambda: Told(change))
     known = registry._declared()
     name = f"told{len(counted)}{id(change)}"
     monkeypatch.setattr(registry, "_declared", lambda: {**known, name: declared})
@@ -173,7 +173,7 @@ def test_fcl_sees_published_pairs_apart_at_the_lower_bound_and_touching_at_the_u
 
 
 def test_answers_that_are_kept_have_a_page_which_the_overview_links(folder, monkeypatch, capsys):
-    late = registry.Declaration(lambda: lambda: Told(lambda time: time + 1e-3))
+    late = registry.DeclaredBackend(lambda: lambda: Told(lambda time: time + 1e-3))
     known = registry._declared()
     monkeypatch.setattr(registry, "_declared", lambda: {**known, "late": late})
     database = str(folder / "answers.db")

@@ -10,8 +10,9 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from harness.arrays import Floats
 from harness.motion.predictive.order import REORDERED_FROM
-from harness.motion.predictive.state import ANCHOR, GRID, LARGER, Cells, Floats, Records
+from harness.motion.predictive.state import ANCHOR, GRID, LARGER, Cells, Records
 
 # Radii of one class are within this ratio, and classes are joined where not more than so many spheres of both are in 27
 # cells.

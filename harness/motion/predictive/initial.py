@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from harness.arrays import Floats
 from harness.errors import InputError
-from harness.motion.predictive.state import Floats
 
 
 @dataclass(frozen=True)

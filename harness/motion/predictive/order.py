@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.motion.predictive.state import Floats, World
+from harness.arrays import Floats
+from harness.motion.predictive.state import World
 
 # Fewer spheres than this fit into the cache in any order.
 REORDERED_FROM = 2048

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from harness.arrays import Pairs
+from harness.arrays import Floats, Pairs
 from harness.errors import InputError
 from harness.motion.predictive.codes import Event, NeighbourSearch, Stop
 from harness.motion.predictive.flight import fly, fly_deep, fly_several, fly_several_deep, populate
@@ -17,7 +17,6 @@ from harness.motion.predictive.initial import check
 from harness.motion.predictive.order import labelled, positions_at, reorder
 from harness.motion.predictive.preparation import empty_lists, prepare
 from harness.motion.predictive.rules import DEEP_PREFETCH_COUNT, RESPONSES, SEARCHES, choose_search, make_rules
-from harness.motion.predictive.state import Floats
 
 
 class Simulation:

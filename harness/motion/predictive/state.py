@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from harness.arrays import Floats
+
 Ints = NDArray[np.int32]
 Indices = NDArray[np.uint32]  # unsigned: the compiled code then need not ask whether an index counts from the end
 Longs = NDArray[np.int64]

@@ -21,7 +21,7 @@ CHARACTER = 7.0  # px, generous for a proportional font of that size
 
 
 @dataclass(frozen=True)
-class Frame:
+class PanelFrame:
     """Where a panel lies, px from the bottom left, and what its edges mean."""
 
     left: float
@@ -41,7 +41,7 @@ class Frame:
         return self.bottom + _share(value, self.y_range, self.logarithmic) * (self.top - self.bottom)
 
 
-def x_ticks(canvas: Canvas, frame: Frame, ticks: Sequence[tuple[float, str]]) -> None:
+def x_ticks(canvas: Canvas, frame: PanelFrame, ticks: Sequence[tuple[float, str]]) -> None:
     """Lines at these values of x, with their texts below the frame."""
     places = [frame.x(value) for value, _ in ticks]
     canvas.line(
@@ -54,7 +54,7 @@ def x_ticks(canvas: Canvas, frame: Frame, ticks: Sequence[tuple[float, str]]) ->
         canvas.text(x, frame.bottom - canvas.font - 5, text, horizontal="center")
 
 
-def y_ticks(canvas: Canvas, frame: Frame, most: int) -> None:
+def y_ticks(canvas: Canvas, frame: PanelFrame, most: int) -> None:
     """Lines at round numbers of y, no more than so many, with their texts to the left of the frame."""
     ticks = round_numbers(frame.y_range, frame.logarithmic, most)
     places = [frame.y(value) for value in ticks]

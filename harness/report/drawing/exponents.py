@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from harness.report.drawing import palette
-from harness.report.drawing.axes import CHARACTER, FONT, Form, Frame, even_numbers, shorten, tick_text, x_ticks
+from harness.report.drawing.axes import CHARACTER, FONT, Form, PanelFrame, even_numbers, shorten, tick_text, x_ticks
 from harness.report.drawing.canvas import Canvas
 
 _POWERS = {-1: "inverse", 0: "constant", 1: "linear", 2: "square", 3: "cube"}
@@ -31,7 +31,7 @@ def draw_exponents(exponents: Sequence[Slope], leaf: str, form: Form, name: str)
     lows = [row.low if math.isfinite(row.low) else row.value for row in exponents]
     highs = [row.high if math.isfinite(row.high) else row.value for row in exponents]
     x_range = (min(0.0, *lows) - 0.12, max(1.0, *highs) + 0.18)
-    frame = Frame(left, 50.0, width - 18, height - 30, x_range, (0.6 - len(exponents), 0.6), False)
+    frame = PanelFrame(left, 50.0, width - 18, height - 30, x_range, (0.6 - len(exponents), 0.6), False)
     canvas = Canvas(width, height, FONT)
     ticks = even_numbers(*x_range, 5 if form == "narrow" else 7, (1, 2, 5))
     x_ticks(canvas, frame, [(tick, tick_text(tick)) for tick in ticks])

@@ -13,7 +13,7 @@ from harness.report.drawing.axes import (
     FONT,
     WIDTHS,
     Form,
-    Frame,
+    PanelFrame,
     round_numbers,
     shorten,
     tick_text,
@@ -90,11 +90,13 @@ def draw_panels(panels: Sequence[Panel], form: Form, name: str, labels: bool = T
     return canvas.svg(name)
 
 
-def _frame(panel: Panel, corner: tuple[float, float], size: tuple[float, float], form: Form, labels: bool) -> Frame:
+def _frame(
+    panel: Panel, corner: tuple[float, float], size: tuple[float, float], form: Form, labels: bool
+) -> PanelFrame:
     left, bottom, top, right = (44.0, 26.0, 12.0, 10.0) if form == "card" else (_LEFT, 52.0, 34.0, 14.0)
     if labels and form == "wide":
         right = min(size[0] * 0.34, 22 + CHARACTER * max((len(line.label) for line in panel.lines), default=0))
-    return Frame(
+    return PanelFrame(
         corner[0] + left,
         corner[1] + bottom,
         corner[0] + size[0] - right,
@@ -105,7 +107,7 @@ def _frame(panel: Panel, corner: tuple[float, float], size: tuple[float, float],
     )
 
 
-def _panel(canvas: Canvas, panel: Panel, frame: Frame, form: Form, labels: bool) -> None:
+def _panel(canvas: Canvas, panel: Panel, frame: PanelFrame, form: Form, labels: bool) -> None:
     x_ticks(canvas, frame, _x_texts(panel, frame, form))
     y_ticks(canvas, frame, 4 if form == "card" else 7)
     canvas.line([frame.left, frame.left, frame.right], [frame.top, frame.bottom, frame.bottom], palette.SOFT, 1.0)
@@ -128,7 +130,7 @@ def _panel(canvas: Canvas, panel: Panel, frame: Frame, form: Form, labels: bool)
         _label_ends(canvas, panel, frame)
 
 
-def _line(canvas: Canvas, panel: Panel, line: Line, frame: Frame, form: Form) -> None:
+def _line(canvas: Canvas, panel: Panel, line: Line, frame: PanelFrame, form: Form) -> None:
     colour = palette.SOFT if line.foreign else palette.colour(line.style)
     xs, ys = [frame.x(value) for value in line.x], [frame.y(value) for value in line.y]
     low, high = [frame.y(value) for value in line.low], [frame.y(value) for value in line.high]
@@ -151,7 +153,7 @@ def _line(canvas: Canvas, panel: Panel, line: Line, frame: Frame, form: Form) ->
         canvas.line([xs[place]], [ys[place]], colour, 0.0, marker=marker, size=size, hollow=True)
 
 
-def _front(canvas: Canvas, panel: Panel, frame: Frame) -> None:
+def _front(canvas: Canvas, panel: Panel, frame: PanelFrame) -> None:
     """A broad pale staircase: from a corner on, its error is to be had at every higher cost."""
     xs, ys = [], []
     for place, (x, y) in enumerate(panel.front):
@@ -183,7 +185,7 @@ def _y_range(panel: Panel) -> tuple[float, float]:
     return (low - 0.06 * spread if low < 0 else 0.0), high + 0.08 * spread
 
 
-def _x_texts(panel: Panel, frame: Frame, form: Form) -> list[tuple[float, str]]:
+def _x_texts(panel: Panel, frame: PanelFrame, form: Form) -> list[tuple[float, str]]:
     """Ticks at the measured values themselves, as many as fit."""
     character = CHARACTER * (0.85 if form == "card" else 1.0)
     if panel.categories:
@@ -205,7 +207,7 @@ def _x_texts(panel: Panel, frame: Frame, form: Form) -> list[tuple[float, str]]:
     return kept
 
 
-def _label_ends(canvas: Canvas, panel: Panel, frame: Frame) -> None:
+def _label_ends(canvas: Canvas, panel: Panel, frame: PanelFrame) -> None:
     """Name every line at its right end; labels that would overlap are moved apart and led to their line."""
     ends = [(line, frame.x(line.x[-1]), frame.y(line.y[-1])) for line in panel.lines if line.y]
     ends.sort(key=lambda end: (end[2], end[0].label))

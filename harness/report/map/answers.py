@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from harness.report.lines import interval_text
-from harness.report.map.cells import Cell, MethodMap, method_of, time_accuracy
+from harness.report.lines import median_text
+from harness.report.map.cells import MapCell, MethodMap, method_of, time_accuracy
 from harness.report.quantity import leaf_text, number, scale
 from harness.report.ranking import Ranked
 from harness.report.styles import style_of
@@ -27,7 +27,7 @@ class Answer:
     """
 
     where: MethodMap
-    cell: Cell
+    cell: MapCell
     x: str
     y: str
     method: str = "nobody"
@@ -58,7 +58,7 @@ def place_text(leaf: str, value: Any) -> str:
     return f"{leaf} {leaf_text(value)}"
 
 
-def _answer(made: MethodMap, cell: Cell) -> Answer:
+def _answer(made: MethodMap, cell: MapCell) -> Answer:
     x, y = place_text(made.x_leaf, cell.x), place_text(made.y_leaf, cell.y)
     best = cell.best
     if best is None:
@@ -84,14 +84,14 @@ def _cost(made: MethodMap, best: Ranked) -> str:
     if found is None:
         return ""
     unit = scale([found.median], metric_unit(made.metric))
-    text = f"{metric_title(made.metric)} {interval_text(found, unit)}"
+    text = f"{metric_title(made.metric)} {median_text(found, unit)}"
     duration = best.point.parameters.get("duration")
     if made.metric == "run_seconds" and isinstance(duration, int | float):
         text += f", for {leaf_text(duration)} s of motion"
     return text
 
 
-def _sure(cell: Cell) -> str:
+def _sure(cell: MapCell) -> str:
     if cell.doubt:
         return f"in doubt: {cell.doubt}"
     if len(cell.ranked) == 1:
@@ -102,7 +102,7 @@ def _sure(cell: Cell) -> str:
     return f"told apart from all {others} others that are right here"
 
 
-def _second(cell: Cell) -> str:
+def _second(cell: MapCell) -> str:
     second = cell.runner_up
     if second is None:
         return ""

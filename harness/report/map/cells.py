@@ -22,7 +22,7 @@ from harness.vocabulary import MethodName
 
 
 @dataclass(frozen=True)
-class Cell:
+class MapCell:
     """One cell of a map.
 
     Parameters
@@ -81,7 +81,7 @@ class MethodMap:
     x_leaf: str
     y_leaf: str
     metric: str
-    cells: tuple[Cell, ...]
+    cells: tuple[MapCell, ...]
 
     @property
     def title(self) -> str:
@@ -177,7 +177,7 @@ def _sufficient(lines: Sequence[Series], accuracy: float) -> list[Series]:
     return list(longest.values())
 
 
-def _cells(arrangement: Arrangement, lines: Sequence[Series], y_leaf: str) -> Iterable[Cell]:
+def _cells(arrangement: Arrangement, lines: Sequence[Series], y_leaf: str) -> Iterable[MapCell]:
     resolution = arrangement.resolution(arrangement.metrics[0])
     for panel in arrangement.panels:
         inside = [line for line in lines if line.panel == panel]
@@ -187,7 +187,7 @@ def _cells(arrangement: Arrangement, lines: Sequence[Series], y_leaf: str) -> It
         for x in arrangement.x_values:
             if any(line.at(x) is not None for line in inside):
                 ranked = rank(inside, x, arrangement.metrics[0], resolution)
-                yield Cell(hashable(x), y, tuple(ranked))
+                yield MapCell(hashable(x), y, tuple(ranked))
 
 
 def _rounded(value: Any) -> Any:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from harness.report.published import PublishedRow, Recovered, metrics_of
 from harness.report.quantity import number, scale
-from harness.report.table import Column, Entry, Group, Table, counted, failure, plain, words
+from harness.report.table import Column, ColumnGroup, Entry, Table, counted, failure, plain, words
 from harness.report.words import metric_title, metric_unit
 
 
@@ -22,10 +22,10 @@ def published_table(rows: Sequence[PublishedRow], source: str) -> Table:
     }
     several = len({row.series for row in rows if row.point}) > 1
     columns = [Column("Row", numeric=False)] + ([Column("Ours is", numeric=False)] if several else [])
-    groups = [Group("", len(columns))]
+    groups = [ColumnGroup("", len(columns))]
     for metric in metrics:
         columns += [Column("theirs", units[metric].symbol), Column("ours", units[metric].symbol), Column("ratio")]
-        groups.append(Group(metric_title(metric), 3))
+        groups.append(ColumnGroup(metric_title(metric), 3))
     lines = []
     for row in rows:
         line = [words(row.name)]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from harness.report.atlas import AtlasPart, AtlasResults
 from harness.report.drawing.rates import draw_rates
-from harness.report.figure import Figure, FigureSource, Key, name_of
+from harness.report.figure import Figure, FigureSource, Key, figure_name
 from harness.report.quantity import number
 
 WITHIN, BEYOND = 0, 2
@@ -19,7 +19,7 @@ def _figures(atlas: AtlasResults) -> Iterator[Figure]:
 
 def matrix_figure(part: AtlasPart) -> Figure:
     """The matrix of one shape of one mesh."""
-    name = name_of("atlas", part.experiment, part.title)
+    name = figure_name("atlas", part.experiment, part.title)
     beyond = [
         f"{engine} in {number(cell['beyond'])} of {number(cell['verdicts'])} ({family})"
         for (engine, family), cell in sorted(part.cells.items())

@@ -11,7 +11,7 @@ from dataclasses import replace
 from harness.report.drawing.panels import Line, Panel, draw_panels
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure, FigureSource, Key
-from harness.report.lines import axis_title, in_words, interval_text, spans_logarithms
+from harness.report.lines import axis_title, in_words, median_text, spans_logarithms
 from harness.report.quantity import Scale, leaf_text, scale
 from harness.report.series import Arrangement, Series
 from harness.report.words import capital, is_noisy, leaf_label, leaf_title, metric_title, metric_unit
@@ -85,7 +85,7 @@ def _line(series: Series, metric: str, unit: Scale, arrangement: Arrangement) ->
         y.append(found.median / unit.factor)
         low.append(found.low / unit.factor)
         high.append(found.high / unit.factor)
-        texts.append(f"{series.label}, {_place(arrangement, value)}: {interval_text(found, unit)}")
+        texts.append(f"{series.label}, {_place(arrangement, value)}: {median_text(found, unit)}")
     return Line(series.label, series.style, tuple(x), tuple(y), tuple(low), tuple(high), texts=tuple(texts))
 
 

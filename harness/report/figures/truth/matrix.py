@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from harness.report.drawing.rates import draw_rates
-from harness.report.figure import Figure, FigureSource, Key, name_of
+from harness.report.figure import Figure, FigureSource, Key, figure_name
 from harness.report.quantity import number
 from harness.report.truth import ALL, OTHERS, UNSAFE, TruthPart, TruthResults
 
@@ -29,7 +29,7 @@ def _figure(part: TruthPart) -> Figure:
         for engine in part.engines
         if (found := part.count(engine, ALL)) is not None
     ]
-    name = name_of("truth", part.name)
+    name = figure_name("truth", part.name)
     return Figure(
         name,
         f"Answers that are not right, {part.name}",
