@@ -78,8 +78,14 @@ def _recorded(point: Point, files: SceneFiles, poses: RecordedPoses, mesh_of: In
 
 
 def mesh_count(point: Point) -> int:
-    """How many different meshes the bodies of a point have: a mesh that is named may be that of none."""
-    return len(np.unique(_mesh_numbers(point, body_count(point)))) or len(point.scene.mesh_names)
+    """How many different meshes the bodies of a point have: a mesh that is named may be that of none.
+
+    Of a million bodies and more the first million.
+    """
+    names, count = point.scene.mesh_names, min(body_count(point), MOST_DRAWN)
+    if len(names) < 2 or not count:
+        return len(names)
+    return len(np.unique(_mesh_numbers(point, count)))
 
 
 def _of_bodies(meshes: tuple[Mesh, ...], mesh_of: Ints) -> tuple[tuple[Mesh, ...], Ints]:
