@@ -22,6 +22,7 @@ from harness.narrowphase.immersion_duration import immersion_lasts
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.nearness_duration import NO_WITNESSES, nearest_points, nearness_lasts
 from harness.narrowphase.overlap_duration import overlap_lasts
+from harness.narrowphase.simplex_nearness import stays_near
 from harness.narrowphase.support import SupportMap
 from harness.narrowphase.tree_pairs import DEPTH, ROOTS, NodePair, Trees
 from harness.narrowphase.triangles_within import triangles_within
@@ -31,7 +32,7 @@ from harness.narrowphase.verdicts import PairVerdict, SearchVerdict
 Shape = TypeVar("Shape", SupportMap, MeshShape)
 Memory = TypeVar("Memory")
 
-# Steps after which following a contact is given up. Ordinary ones take 50 to 200.
+# Steps after which following a contact is given up. Ordinary ones take 10 to 200.
 MOST_STEPS = 20_000
 # Of these, in a row, such as only the gap allows; an ordinary contact has 20, faces that slide over each other no end.
 MOST_CREEPING = 2_000
@@ -195,10 +196,14 @@ def hold_of_hulls(
     pose = seen.pose
     margin = MARGIN * (pose.size_a + pose.size_b)
     found = hull_distance(hull_a, hull_b, pose, start, scaled(pose.offset, -1.0), margin, np.inf, 0.0)
+    limit = near * (1.0 + RESOLUTION / ENDING_GAP)
     if found.verdict != PairVerdict.TOUCHING:
-        return Hold(0.0, 0.0, near - found.lower), found.warm_start
+        flat = found.warm_start[3] < 0  # else rounding alone keeps a tetrahedron from showing an overlap
+        lasts = stays_near(hull_a, hull_b, seen, found.warm_start, limit) if flat and found.lower <= near else 0.0
+        return Hold(0.0, lasts, near - found.lower), found.warm_start
     overlap = overlap_lasts(hull_a, hull_b, seen, found.warm_start)
-    return Hold(overlap.lasts, 0.0, near), overlap.warm_start
+    lasts = stays_near(hull_a, hull_b, seen, overlap.face, limit) if overlap.depth < near else 0.0
+    return Hold(overlap.lasts, lasts, near), overlap.warm_start
 
 
 @inner

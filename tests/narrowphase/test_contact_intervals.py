@@ -105,6 +105,33 @@ def test_hulls_overlap_at_every_instant_of_a_contact_and_at_none_between(seed, n
             assert found.verdict == expected or (inside and found.lower <= 1.25e-7)
 
 
+def gap_of_hulls(hull, a, b, time):
+    offset = minus(place(b, time), place(a, time))
+    pose = relative_pose(orientation(a, time), a.size, orientation(b, time), b.size, offset)
+    return hull_distance(hull, hull, pose, COLD_START, (1.0, 0.0, 0.0), MARGIN * (a.size + b.size), np.inf, 0.0).lower
+
+
+def test_contacts_of_hulls_are_followed_in_few_steps_and_end_where_the_gap_is_just_wider_than_the_tolerance():
+    # where they end, steps of what is left by the speed alone go on by a third each, down to the tolerance
+    most_on_average = {0.0: 18, 3.0: 55, 30.0: 190}
+    steps, hull = {spin: [] for spin in most_on_average}, shape_named("pumpkin-1753.ply").hull
+    for seed in range(90):
+        tolerance, spin = (1e-4, 1e-7, 1e-10)[seed % 3], (0.0, 3.0, 30.0)[seed // 3 % 3]
+        a, b = encounter(seed, spin)
+        contacts = hull_contacts(hull, hull, a, b, 0.0, 3.0, tolerance)
+        for begin, end in contacts.intervals[contacts.intervals[:, 1] < 3.0]:
+            ended = end_of_hull_contact(hull, hull, a, b, begin, 3.0, tolerance)
+            steps[spin].append(ended.steps)
+            assert (ended.verdict, ended.time) == (SearchVerdict.FOUND, end)
+            rounding = 4.0 * MARGIN + 1e-15 * (1.0 + np.abs(a.spin).max())
+            assert 1.125 * tolerance - rounding <= gap_of_hulls(hull, a, b, end) <= 1.25 * tolerance + rounding
+            for before in np.geomspace(1e-14, end - begin, 60):
+                assert gap_of_hulls(hull, a, b, end - before) <= 1.25 * tolerance + rounding
+    for spin, most in most_on_average.items():
+        assert len(steps[spin]) > 20
+        assert np.mean(steps[spin]) < most
+
+
 @pytest.mark.slow
 @settings(max_examples=15)
 @given(st.integers(0, 10**6), st.sampled_from(MESHES))

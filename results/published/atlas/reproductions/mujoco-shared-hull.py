@@ -57,4 +57,4 @@ assert mean[0] == mean[1]
 said = touching()
 print("mujoco", mujoco.__version__, "says", "they touch" if said else "they do not touch")
 print("exactly, they overlap by 0.005, which is checked")
-print("reproduced" if said != True else "not reproduced: this version is right")
+print("reproduced" if said != True else "not reproduced: this version answers otherwise")

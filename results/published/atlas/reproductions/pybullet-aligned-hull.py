@@ -53,4 +53,4 @@ assert mean[0] == mean[1]
 said = touching()
 print("pybullet", version('pybullet'), "says", "they touch" if said else "they do not touch")
 print("exactly, they overlap by 0.000149, which is checked")
-print("reproduced" if said != True else "not reproduced: this version is right")
+print("reproduced" if said != True else "not reproduced: this version answers otherwise")
