@@ -7,7 +7,7 @@ With `engine.query: distance` or `tolerance` an event is that a pair comes near,
 with `impact` that it begins to touch, at its exact time. --json has every answer in full: `near` (frame, time, bodies,
 gap, points) or `impacts` (time, bodies).
 
-With --json or --csv also the state of each body of a hit: its position (m), its velocity before and after (m/s), and
+With --json or --csv also the state of each body of an event: its position (m), its velocity before and after (m/s), and
 the impulse that it received (kg m/s). With `response: none`, a wall turns the component along its normal, whatever
 other walls were met in that frame.
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from itertools import count
 from pathlib import Path
 
 from harness.compare.outcome import Case
@@ -35,14 +36,24 @@ def save(case: Case, folder: Path, name: str, meshes: Sequence[Path], script: st
         If a file cannot be written; no half of one is left.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for number in set(case.scene.mesh_of.tolist()) if meshes else ():
-        if not (folder / meshes[number].name).exists():
-            write_whole(folder / meshes[number].name, meshes[number].read_bytes())
+    names = [mesh.name for mesh in meshes]
+    for number in sorted(set(case.scene.mesh_of.tolist())) if meshes else ():
+        names[number] = _copied(meshes[number], folder)
     path = folder / f"{name}.yaml"
     if script is not None:
         write_whole(path.with_suffix(".py"), script)
-    write_whole(path, text_of(case, [mesh.name for mesh in meshes]))
+    write_whole(path, text_of(case, names))
     return path
+
+
+def _copied(mesh: Path, folder: Path) -> str:
+    """The name of a copy in a folder, where another mesh may have that name already: links of two robots, say."""
+    content = mesh.read_bytes()
+    names = (mesh.name if number == 1 else f"{mesh.stem}-{number}{mesh.suffix}" for number in count(1))
+    copy = next(path for path in map(folder.joinpath, names) if not path.exists() or path.read_bytes() == content)
+    if not copy.exists():
+        write_whole(copy, content)
+    return copy.name
 
 
 def text_of(case: Case, meshes: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ apart, and FCL decides the rest. Any broad phase of `harness.broadphase` is used
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
@@ -19,7 +19,7 @@ from harness.broadphase.pairs import BroadPhase, Shareable
 from harness.broadphase.scheme import Scheme, scheme_of
 from harness.methods.method import WarmUp
 from harness.methods.query_stages import decide_exact_stages
-from harness.methods.stages import Decisions, Plan
+from harness.methods.stages import Decisions, Plan, span_of
 from harness.methods.stepped import SteppedMethod
 from harness.methods.stepping import Detector
 from harness.methods.warm_up_scene import TOUCHING, of_meshes, two_bodies
@@ -229,7 +229,9 @@ def _decide_crossing(scene: Scene, hulls: bool, decisions: Decisions) -> bool:
         what = "all meshes are convex" if several else "the mesh is convex"
         why = f"{what}, but of bodies of different sizes one may be inside the other, which is no hit"
     else:
-        what = f"{len(scene.meshes) - convex} of {len(scene.meshes)} meshes are" if several else "the mesh is"
+        concave = len(scene.meshes) - convex
+        verb = "are" if concave > 1 else "is"
+        what = f"{concave} of {len(scene.meshes)} meshes {verb}" if several else "the mesh is"
         why = f"{what} not convex: two triangles that cross prove a hit, a full traversal that there is none"
         if convex and equal_sizes(scene):
             why += "; of two convex ones the hulls decide"
@@ -249,16 +251,6 @@ def _decide_containment(scene: Scene, hulls: bool, decisions: Decisions) -> None
         fixed = "contained pairs would go uncounted"
         why = "a mesh wholly inside a larger one is no hit, and counted apart"
         decisions.take("containment", True, why, fixed=fixed)
-
-
-def span_of(numbers: Sequence[int]) -> str:
-    """From the least to the most, in words: one number where they are the same.
-
-    >>> span_of([12]), span_of([12, 1753, 12])
-    ('12', '12 to 1753')
-    """
-    least, most = min(numbers, default=0), max(numbers, default=0)
-    return str(least) if least == most else f"{least} to {most}"
 
 
 def equal_sizes(scene: Scene) -> bool:

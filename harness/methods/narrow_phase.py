@@ -146,7 +146,7 @@ class MeshNarrowPhase:
         may_touch = ~which(verdicts, PairVerdict.SEPARATE)
         if self._any_convex:
             convex = self._convex[close[:, 0]] & self._convex[close[:, 1]]
-            self._tests += np.count_nonzero(convex | may_touch)
+            self._tests += int(np.count_nonzero(convex | may_touch))  # NumPy 2.4 gives a number that JSON refuses
             close, verdicts, convex = close[may_touch], verdicts[may_touch], convex[may_touch]
             same_size = self._sizes[close[:, 0]] == self._sizes[close[:, 1]]
             asked = np.flatnonzero(which(verdicts, PairVerdict.UNDECIDED) | ~(convex & same_size))

@@ -22,7 +22,7 @@ from harness.methods.culled import equal_sizes
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.penetration import Penetration
 from harness.methods.stages import Decisions, Plan
-from harness.methods.stepped import decide_penetration, decide_recording
+from harness.methods.stepped import but_for_the_ignored, decide_penetration, decide_recording
 from harness.methods.warm_up_scene import RESPONSES, TOUCHING, of_meshes, two_bodies
 from harness.motion.course import Course, CourseLog
 from harness.motion.finite import require_finite_state
@@ -93,7 +93,7 @@ def _decide_pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
     def take(name: str, kept: bool, why: str) -> None:
         decisions.take(name, kept and count > 1, why if count > 1 else alone, fixed=_FIXED)
 
-    take("pairs", True, found)
+    take("pairs", True, f"{found}{but_for_the_ignored(scene)}")
     if not solid:
         _decide_neighbour_lists(scene, law, decisions)
         return

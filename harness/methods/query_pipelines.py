@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from harness.arrays import Flags, Pairs
+from harness.arrays import Flags, Floats, Ints, Pairs
 from harness.measure.clocks import Clock
 from harness.methods.impact_times import FrameMotion, ImpactFinder, half_moves
 from harness.methods.near_pairs import NearFinder
@@ -21,6 +21,7 @@ from harness.methods.stages import Plan
 from harness.methods.step_metrics import PHASES, clock_metrics, rates
 from harness.motion.answers import NearLog
 from harness.motion.finite import require_finite_state
+from harness.motion.hit_states import HitStateLog
 from harness.motion.hits import Outcome
 from harness.motion.kinematics import Trajectory
 from harness.motion.law import MotionLaw
@@ -38,6 +39,7 @@ class _Flight:
     observed : whether what the frames answer is looked at
     near : pairs that were near, over all frames asked about
     log : of the answers of every frame, if they are kept
+    states : of the bodies of every event, if they are kept
     """
 
     law: MotionLaw
@@ -49,6 +51,34 @@ class _Flight:
     observed: bool
     near: int = 0
     log: NearLog | None = None
+    states: HitStateLog | None = None
+
+    def observe(self, time: float, pairs: Pairs, begun: Flags, times: Floats | None = None) -> None:
+        """Observe a frame and keep the states of the bodies of its events, outside of the clock.
+
+        Parameters
+        ----------
+        time, pairs : of the frame, as of `Observer.frame`
+        begun : (k,) bool array, which of the pairs are events
+        times : (k,) s, when the pairs began to touch, ascending; without, all at the frame
+        """
+        walls = self.folds.by(time)
+        self.observer.frame(time, pairs, begun, walls, times)
+        if self.states is None:
+            return
+        events = pairs[begun]
+        if times is None:
+            self._keep(time, events, walls)
+            return
+        for moment, pair in zip(times[begun].tolist(), events, strict=True):
+            self._keep(moment, pair[None], _NO_WALLS)
+        self._keep(time, _NO_PAIRS, walls)
+
+    def _keep(self, time: float, pairs: Pairs, walls: Ints) -> None:
+        if self.states is not None and (len(pairs) or walls.any()):
+            self.trajectory.move_to(time)
+            velocities = self.trajectory.velocities_at(time)
+            self.states.add_passing(pairs, walls, self.trajectory.positions, velocities)
 
 
 class QueryPipeline(ABC):
@@ -99,6 +129,7 @@ class QueryPipeline(ABC):
             OnsetFinder(len(scene.bodies)),
             observed,
             log=self._log(traced),
+            states=HitStateLog(scene.bodies.masses) if traced and plan.keeps("recording") else None,
         )
         self.begin(flight)
         # bodies at rest give the same answer in every frame, which is asked for once
@@ -125,7 +156,8 @@ class QueryPipeline(ABC):
             **({} if scene.poses is not None else conserved(observer)),
             "event_digest": observer.digest.value,
         }
-        trace = flight.observer.trace(end, counted, near=flight.log is not None)
+        states = None if flight.states is None else flight.states.states()
+        trace = flight.observer.trace(end, counted, states=states, near=flight.log is not None)
         answers = flight.log.answers() if flight.log is not None else None
         if trace is not None:
             trace = replace(trace, query=self._query, answers=answers, step=law.dt)
@@ -136,7 +168,7 @@ class QueryPipeline(ABC):
         """End a frame of bodies none of which can get near another."""
         flight.clock.lap("pair_seconds")
         if flight.observed:
-            flight.observer.frame(time, _NO_PAIRS, _NO_FLAGS, flight.folds.by(time))
+            flight.observe(time, _NO_PAIRS, _NO_FLAGS)
 
     def _log(self, traced: bool) -> NearLog | None:
         return None
@@ -183,7 +215,7 @@ class NearPipeline(QueryPipeline):
         if flight.log is not None:
             # two points that are near show that the pair is, also where no gap was asked for
             flight.log.add(number, pairs, gaps if self._gaps else None, points)
-        flight.observer.frame(time, pairs, flight.onsets.of(pairs), flight.folds.by(time))
+        flight.observe(time, pairs, flight.onsets.of(pairs))
 
     def found(self, flight: _Flight, times: float) -> dict[str, float]:
         return {"near_pairs": times * flight.near, "events": flight.observer.wall_hits}
@@ -245,7 +277,7 @@ class ImpactPipeline(QueryPipeline):
         pairs, times = finder.checked(found)
         order = np.argsort(times, kind="stable")
         hits = np.ones(len(pairs), np.bool_)
-        flight.observer.frame(time, pairs[order], hits, flight.folds.by(time), start + times[order])
+        flight.observe(time, pairs[order], hits, start + times[order])
 
     def found(self, flight: _Flight, times: float) -> dict[str, float]:
         hits, walls = flight.observer.pair_hits, flight.observer.wall_hits
@@ -255,3 +287,4 @@ class ImpactPipeline(QueryPipeline):
 _NOTHING: Mapping[str, float] = {"pair_tests": 0, "narrow_tests": 0}
 _NO_PAIRS: Pairs = np.empty((0, 2), np.int64)
 _NO_FLAGS: Flags = np.empty(0, np.bool_)
+_NO_WALLS: Ints = np.zeros((0, 6), np.int64)

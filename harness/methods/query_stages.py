@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from harness.methods.stages import Decisions
+from harness.methods.stages import Decisions, span_of
 from harness.scene.scene import Scene
 from harness.vocabulary import NEAR_QUERIES, Query
 
@@ -29,7 +29,8 @@ _NOT_NEEDED = {
 
 
 def _decide_gaps(query: Query, scene: Scene, decisions: Decisions) -> None:
-    vertices, faces = scene.hull_vertices, scene.faces
+    vertices = span_of([len(mesh.hull.vertices) for mesh in scene.meshes])
+    faces = span_of([len(mesh.faces) for mesh in scene.meshes])
     known = "until it is known to be wider or not" if query == "tolerance" else "down to tolerance"
     lost = "there would be no gap"
     if scene.shape == "sphere":

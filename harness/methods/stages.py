@@ -112,5 +112,15 @@ class Decisions:
         return Plan(tuple(self.stages), warnings)
 
 
+def span_of(numbers: Sequence[int]) -> str:
+    """From the least to the most, in words: one number where they are the same.
+
+    >>> span_of([12]), span_of([12, 1753, 12])
+    ('12', '12 to 1753')
+    """
+    least, most = min(numbers, default=0), max(numbers, default=0)
+    return str(least) if least == most else f"{least} to {most}"
+
+
 def _state(kept: bool) -> str:
     return "on" if kept else "off"

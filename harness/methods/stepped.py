@@ -165,6 +165,7 @@ class SteppedMethod(Method):
             decisions.take("pairs", False, why, fixed=why)
             self.no_detection(why, decisions, fixed=why)
             return False
+        less = but_for_the_ignored(scene)
         if self.leaves_out and scene.poses is None and no_pair_can_meet(scene, flown, self.within or 0.0):
             met = f"come within {self.within:g} m" if self.within else "meet"
             why = f"no two of {count} bodies can {met} in {flown:g} s at their speeds"
@@ -172,10 +173,11 @@ class SteppedMethod(Method):
                 self.no_detection(why, decisions, fixed="no pair is tested; keep pairs")
                 return False
         elif self.name.query == "collision":
-            decisions.take("pairs", True, self.finding(count), fixed="hits would be missed")
+            decisions.take("pairs", True, f"{self.finding(count)}{less}", fixed="hits would be missed")
         else:
             asked = QUERIES[self.name.query].replace("`within`", f"{self.within or 0.0:g} m")
-            decisions.take("pairs", True, f"{self.name.query}: {asked}", fixed="the question would go unanswered")
+            why = f"{self.name.query}: {asked}{less}"
+            decisions.take("pairs", True, why, fixed="the question would go unanswered")
         if self.name.query == "collision":
             self.decide_detection(scene, decisions)
         else:
@@ -208,6 +210,14 @@ class SteppedMethod(Method):
             decisions.take("wall_cull", False, why, fixed="brute force leaves nothing out; choose algorithm grid")
         else:
             decisions.take("wall_cull", True, "a body whose bounding sphere reaches no wall needs no support function")
+
+
+def but_for_the_ignored(scene: Scene) -> str:
+    """What a sentence about all pairs must add where a scene has pairs that are never asked about."""
+    count = len(scene.ignored)
+    if not count:
+        return ""
+    return f", but for the {count} that are ignored" if count > 1 else ", but for the one that is ignored"
 
 
 def decide_penetration(scene: Scene, decisions: Decisions) -> None:

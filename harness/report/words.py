@@ -120,6 +120,8 @@ def scene_text(parameters: Mapping[str, Any]) -> str:
     '40 bodies of 2 meshes (mesh)'
     >>> scene_text({"bodies": [{"mesh": "a.ply"}, {"mesh": "b.ply"}], "shape": "mesh"}).replace("\u00a0", " ")
     '2 bodies of 2 meshes (mesh)'
+    >>> scene_text({"bodies": [{"mesh": "a.ply"}], "mesh": "of-none.ply", "shape": "mesh"}).replace("\u00a0", " ")
+    '1 body of a (mesh)'
     >>> scene_text({"count": 9, "shape": "sphere", "query": "distance", "within": 0.05}).replace("\u00a0", " ")
     '9 spheres, query distance within 0.05 m'
     """
@@ -148,5 +150,6 @@ def _mesh_names(parameters: Mapping[str, Any]) -> list[str]:
     """The meshes that bodies may have, each once."""
     mesh, bodies = parameters.get("mesh"), parameters.get("bodies")
     chosen = mesh["choice"] if isinstance(mesh, Mapping) else [mesh]
-    own = [body.get("mesh") for body in bodies] if isinstance(bodies, list | tuple) else []
-    return [str(name) for name in dict.fromkeys([*chosen, *own]) if name]
+    own = [body.get("mesh") for body in bodies] if isinstance(bodies, list | tuple) else [None]
+    shared = chosen if None in own else []
+    return [str(name) for name in dict.fromkeys([*shared, *own]) if name]

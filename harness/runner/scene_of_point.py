@@ -50,9 +50,10 @@ def build_scene(point: Point, files: SceneFiles, memory: int | None = None) -> S
     if files.poses is not None:
         return _recorded(point, files, files.poses, mesh_of)
     bodies = _launched(point, files, mesh_of) if point.scene.bodies is None else _explicit(point, files, mesh_of)
+    meshes, mesh_of = _of_bodies(files.meshes, mesh_of)
     return Scene(
         point.scene.shape,
-        files.meshes,
+        meshes,
         bodies,
         box_of(point, files),
         mesh_of=mesh_of,
@@ -72,8 +73,27 @@ def _recorded(point: Point, files: SceneFiles, poses: RecordedPoses, mesh_of: In
     bodies = centres.at_start(sizes, sizes**3)
     # twice as wide as it must be, so that no rounding brings a body to a wall
     box = Box(2.0 * centres.half_box(bodies.radii))
-    scene = point.scene
-    return Scene(scene.shape, files.meshes, bodies, box, mesh_of=mesh_of, ignored=_ignored(point), poses=centres)
+    meshes, mesh_of = _of_bodies(files.meshes, mesh_of)
+    return Scene(point.scene.shape, meshes, bodies, box, mesh_of=mesh_of, ignored=_ignored(point), poses=centres)
+
+
+def mesh_count(point: Point) -> int:
+    """How many different meshes the bodies of a point have: a mesh that is named may be that of none.
+
+    Of a million bodies and more the first million.
+    """
+    names, count = point.scene.mesh_names, min(body_count(point), MOST_DRAWN)
+    if len(names) < 2 or not count:
+        return len(names)
+    return len(np.unique(_mesh_numbers(point, count)))
+
+
+def _of_bodies(meshes: tuple[Mesh, ...], mesh_of: Ints) -> tuple[tuple[Mesh, ...], Ints]:
+    """The meshes that a body has, and each body's among them: one that none has needs no stage of a plan."""
+    if len(meshes) < 2 or not len(mesh_of):
+        return meshes, mesh_of
+    had, numbers = np.unique(mesh_of, return_inverse=True)
+    return tuple(meshes[number] for number in had), numbers
 
 
 def body_count(point: Point) -> int:

@@ -14,6 +14,7 @@ from harness.methods.warm_up_scene import two_bodies
 from harness.reference.warm_up import warm_up_reference
 from harness.runner import accuracy
 from harness.runner.point import method_of_point
+from harness.runner.scene_of_point import mesh_count
 from harness.scene.box import Box
 from harness.scene.launch import place
 from harness.vocabulary import Shape
@@ -43,13 +44,13 @@ def warm_up(point: Point) -> bool:
 def warm_ups(point: Point) -> Iterator[WarmUp]:
     """What has to be compiled before a run of a point."""
     yield "placement", _compile_placement
-    yield from method_of_point(point).warm_ups(len(point.scene.mesh_names))
+    yield from method_of_point(point).warm_ups(mesh_count(point))
     if point.reference is not None:
         shape = point.reference.shape
         # its kernels take the meshes of two bodies, and are the same however many there are
         yield f"reference of {shape}s", partial(_compile_reference, shape)
         if point.motion.response != "none":  # the reference has to be flown
-            yield from method_of_point(accuracy.reference_point(point)).warm_ups(len(point.scene.mesh_names))
+            yield from method_of_point(accuracy.reference_point(point)).warm_ups(mesh_count(point))
 
 
 def _compile_placement() -> None:

@@ -186,7 +186,7 @@ def _wrong(row: Sequence[str], folder: Path) -> str | None:
             number = float(named[name])
         except ValueError:
             return f"{name} is no number: {shown(named[name])}"
-        if not np.isfinite(number) or (name.startswith("size") and number <= 0.0):
+        if not math.isfinite(number) or (name.startswith("size") and number <= 0.0):
             return f"{name} must be finite, and a size above 0, not {printable(named[name])}"
         if abs(number) > LARGEST or (name.startswith("size") and number < SMALLEST):
             return f"{name} must be within {LARGEST:g}, and a size at least {SMALLEST:g}, not {number:g}"

@@ -294,8 +294,9 @@ def test_one_large_body_in_a_hundred_takes_a_tenth_of_the_tests_of_equal_bodies_
         assert_exact(detector, positions)
         return detector.pair_tests
 
-    mixed = np.where(np.arange(10_000) % 100 == 0, 0.5, 0.5 / ratio)
-    assert tests_of(mixed) < tests_of(np.full(10_000, 0.5)) / 10
+    # the ratio, 0.09 and 0.05, is the same from 2000 bodies to 10 000; all pairs are looked at to know the answer
+    mixed = np.where(np.arange(3000) % 100 == 0, 0.5, 0.5 / ratio)
+    assert tests_of(mixed) < tests_of(np.full(3000, 0.5)) / 10
 
 
 def test_a_slow_motion_is_sorted_by_moving_a_few_and_a_wild_one_anew():

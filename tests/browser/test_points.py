@@ -77,6 +77,12 @@ def test_rows_are_sorted_by_exact_values_and_grouped_with_their_medians(points):
         tests = [int(text) for text in column(page, "pair_tests")]
         assert tests == sorted(tests, reverse=down)
     assert state_of(page)["sort"] == ["-pair_tests"]
+    heading = page.locator("th[data-name=count]")
+    edge = heading.bounding_box()
+    heading.click(position={"x": 3, "y": edge["height"] - 3})  # beside its text
+    assert state_of(page)["sort"] == ["count"]
+    page.locator("th[data-name=pair_tests]").get_by_role("button").press("Enter")  # without a pointer
+    assert state_of(page)["sort"] == ["pair_tests"]
     page.get_by_label("Group by").select_option("count")
     groups = page.locator("tr.group").all_inner_texts()
     frames = 600  # 10 s of 1/60 s

@@ -1,5 +1,7 @@
 """Scenes of several meshes: every method finds what brute force finds, and the exact judge agrees."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -75,7 +77,8 @@ def test_a_flight_of_several_meshes_is_the_same_by_every_method(shape):
     digests = {}
     for name in ("fcl", "fcl/grid", "fcl/sap", "fcl/tree"):
         method = method_of(MethodName.read(name, shape))
-        outcome = method.load(scene, method.plan(scene, law)).fly(law)
+        outcome = method.load(scene, method.plan(scene, law)).fly(law, traced=True)
+        json.dumps(outcome.trace.to_json(), allow_nan=False)  # as `harness trace --json` prints it
         digests[name] = (outcome.metrics["event_digest"], outcome.metrics["box_hits"])
     assert len(set(digests.values())) == 1
     assert digests["fcl"][1] > 0

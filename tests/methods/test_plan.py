@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from harness.methods.culled import DETECTION
+from harness.methods.registry import method_of
 from harness.methods.stages import StageError
 from harness.methods.stepping import Stepping
 from harness.motion.law import MotionLaw
@@ -15,6 +16,7 @@ from harness.motion.reach import SLACK, fastest, no_pair_can_meet
 from harness.scene.box import Box
 from harness.scene.mesh_file import make_mesh
 from harness.scene.scene import Scene
+from harness.vocabulary import MethodName
 from tests.conftest import cube_mesh, examples, make_bodies, random_scene
 from tests.methods.flights import detector, frames_of, method_for, planned
 from tests.narrowphase.meshes import mesh_named
@@ -221,6 +223,27 @@ def test_brute_force_can_be_made_to_leave_out_nothing():
         if name != "fcl":
             with pytest.raises(StageError, match="brute force leaves nothing out"):
                 stages(random_scene("mesh", 8, 4.0), "brute-force", forced={name: True})
+
+
+def test_a_plan_says_how_many_pairs_are_ignored_and_which_meshes_there_are():
+    cube, pumpkin = cube_mesh(), mesh_named("pumpkin-1753.ply")
+    bodies = make_bodies([[0, 0, 0], [1, 0, 0], [2, 0, 0]], np.eye(3))
+    two = np.array([[0, 1], [0, 2]])
+    for ignored, said in ((two[:0], ""), (two[:1], "the one that is ignored"), (two, "the 2 that are ignored")):
+        scene = Scene(
+            "mesh", (cube, pumpkin), bodies, Box(np.full(3, 9.0)), mesh_of=np.array([0, 1, 1]), ignored=ignored
+        )
+        for algorithm in ("brute-force", "grid", "predictive"):
+            why = stages(scene, algorithm)["pairs"].why
+            assert why.endswith(f", but for {said}") if said else "ignored" not in why
+        law = MotionLaw(1.0, 0.1, "none")
+        for query in ("distance", "impact"):
+            method = method_of(MethodName("fcl", "grid", "mesh", query), within=0.1 if query == "distance" else None)
+            of_query = {stage.name: stage.why for stage in method.plan(scene, law).stages}
+            assert of_query["pairs"].endswith(f", but for {said}") if said else "ignored" not in of_query["pairs"]
+            if query == "distance":
+                assert f"hulls (8 to {len(pumpkin.hull.vertices)} vertices)" in of_query["hull_gap"]
+                assert "surfaces of 12 to 1753 faces" in of_query["surface_gap"]
 
 
 def test_a_digest_tells_two_sequences_of_hits_apart():

@@ -80,7 +80,7 @@ def test_triangles_in_general_position_are_nearly_all_decided():
 @pytest.mark.slow
 @pytest.mark.parametrize("gap", [-1e-11, 1e-11])
 def test_a_point_on_a_face_is_told_by_the_side_it_comes_from(gap):
-    face = ((0.0, 0, 0), (1.0, 0, 0), (0.0, 1, 0))
+    face = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))  # in integers, kernels would be compiled for it alone
     needle = ((0.2, 0.2, gap), (0.3, 0.2, 1.0), (0.2, 0.3, 1.0))
     assert meeting(face, needle, 1e-13) == (PairVerdict.SEPARATE if gap > 0 else PairVerdict.TOUCHING)
 

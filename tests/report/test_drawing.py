@@ -36,6 +36,22 @@ def test_labels_at_line_ends_never_overlap(ends):
     assert all(later - earlier > 15 for earlier, later in pairwise(heights))
 
 
+@pytest.mark.parametrize("form", ["wide", "narrow", "card"])
+def test_texts_of_the_axis_below_stay_on_the_drawing(form):
+    """A long name of x takes two lines, and the last value has room for half of its text."""
+    name = "packing (volume of spheres / volume of box) (packing)"
+    long = Panel("", name, "y", (Line("a", 0, (1.0, 1e12), (1.0, 2.0)),))
+    svg = draw_panels([long], form, "x")
+    width = float(re.search(r'viewBox="0 0 (\d+)', svg)[1])
+    below = re.findall(r'<text x="([\d.]+)"[^>]*text-anchor="middle"[^>]*>([^<]*)</text>', svg)
+    assert any(text.startswith("1\u202f000") for _, text in below)
+    for x, text in below:
+        half = (5.5 if form == "card" else 6.5) * len(text) / 2  # px of an average letter
+        assert half <= float(x) <= width - half, text
+    words = " ".join(text for _, text in below if text[0].isalpha() or text[0] == "(")
+    assert words == ("" if form == "card" else name)
+
+
 def test_labels_that_fit_stand_at_their_lines():
     lines = [Line("low", 0, (1.0, 2.0), (1.0, 1.0)), Line("high", 1, (1.0, 2.0), (9.0, 9.0))]
     low, high = label_heights(draw_panels([panel(lines)], "wide", "x"), ["high", "low"])

@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
-from harness.runner.scene_of_point import box_of, build_scene, derived_parameters
+from harness.experiment.load import load_text
+from harness.runner.point import law_of, method_of_point
+from harness.runner.scene_of_point import box_of, build_scene, derived_parameters, mesh_count
 from harness.scene.scene_files import SceneFiles
+from tests.narrowphase.meshes import mesh_named
 
 
 def scene_of(experiment):
@@ -68,3 +71,31 @@ scene:
     assert bodies.sizes.tolist() == [2, 1]
     assert bodies.masses.tolist() == [8, 5]
     assert bodies.quaternions.tolist() == [[1, 0, 0, 0], [1, 0, 0, 0]]
+
+
+OWN_MESHES = """
+title: Own meshes
+scene:
+  mesh: pumpkin-1753.ply
+  shape: mesh
+  box: [9, 9, 9]
+  bodies:
+    - {mesh: icosphere-1280.ply, position: [-1, 0, 0], velocity: [1, 0, 0]}
+    - {mesh: LAST, position: [1, 0, 0], velocity: [-1, 0, 0]}
+engine: {algorithm: grid}
+"""
+
+
+def test_a_mesh_that_no_body_has_is_none_of_the_scene_and_needs_no_stage():
+    pumpkin, ball = mesh_named("pumpkin-1753.ply"), mesh_named("icosphere-1280.ply")
+    kept = {}
+    for last in (pumpkin, ball):
+        point = load_text(OWN_MESHES.replace("LAST", last.name), "own.yaml").points[0]
+        scene = build_scene(point, SceneFiles((pumpkin, ball)))
+        assert [scene.meshes[number] for number in scene.mesh_of] == [ball, last]
+        assert len(scene.meshes) == mesh_count(point)
+        stages = method_of_point(point).plan(scene, law_of(point, scene)).stages
+        kept[last.name] = {stage.name: stage for stage in stages}
+    assert "1 of 2 meshes is not convex" in kept[pumpkin.name]["crossing"].why
+    assert "the mesh is convex" in kept[ball.name]["crossing"].why
+    assert not kept[ball.name]["crossing"].kept

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+from functools import cache
 from html import unescape
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from harness.backends import registry
 from harness.backends.protocol import ImpactTimes
 from harness.cli.main import main
 from harness.report.site import render
+from harness.truth import folder as folder_of_cases
 from harness.truth.case_scene import CaseScenes
 from harness.truth.folder import COLUMNS, read_set
 
@@ -139,8 +141,20 @@ def test_what_cannot_be_asked_is_a_sentence_and_exit_code_2(folder, capsys, argu
     assert streams.out == ""
 
 
+@pytest.fixture
+def published(monkeypatch):
+    """The published set, which is read once: its 10 000 cases take seconds."""
+    monkeypatch.setattr(folder_of_cases, "read_set", lambda path: read_published() if path == PUBLISHED else None)
+    return read_published()
+
+
+@cache
+def read_published():
+    return read_set(PUBLISHED)
+
+
 @pytest.mark.slow
-def test_published_rows_are_answered_right_by_the_engine(capsys):
+def test_published_rows_are_answered_right_by_the_engine(published, capsys):
     assert main(["truth", "ask", str(PUBLISHED), "--every", "250", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["backends"][0]["families"]
     assert (found["all"]["right"], found["all"]["asked"]) == (42, 42)
@@ -148,7 +162,7 @@ def test_published_rows_are_answered_right_by_the_engine(capsys):
 
 
 @pytest.mark.slow
-def test_slow_approaches_are_answered_no_farther_apart_than_the_tolerance(capsys):
+def test_slow_approaches_are_answered_no_farther_apart_than_the_tolerance(published, capsys):
     # a gap of 1.6e-12 of a size, as if the tolerance were that, would be 7.7e-9 s before the touch
     assert main(["truth", "ask", str(PUBLISHED), "--families", "resting", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["backends"][0]["families"]["resting"]
@@ -156,16 +170,19 @@ def test_slow_approaches_are_answered_no_farther_apart_than_the_tolerance(capsys
 
 
 @pytest.mark.slow
-def test_fcl_sees_published_pairs_apart_at_the_lower_bound_and_touching_at_the_upper_one():
+def test_fcl_sees_published_pairs_apart_at_the_lower_bound_and_touching_at_the_upper_one(published):
     """FCL knows nothing of the proofs, and is asked in other arithmetic."""
-    given = read_set(PUBLISHED)
+    given = published
     scenes, cases = CaseScenes(given), given.cases
     rows = np.flatnonzero(np.isfinite(cases.upper) & (cases.lower > 0.0)).tolist()
     assert len(rows) > 6000
     wrong = []
-    for row in rows:
-        backend, motion = registry.create("fcl"), scenes.motion(row)
-        backend.load(scenes.scene(row))
+    backend, kind = registry.create("fcl"), None
+    for row in sorted(rows, key=scenes.kind):
+        motion = scenes.motion(row)
+        if scenes.kind(row) != kind:
+            kind = scenes.kind(row)
+            backend.load(scenes.scene(row))
         touching = [len(backend.pairs(*motion.at(float(bound[row])))) for bound in (cases.lower, cases.upper)]
         if touching != [0, 1]:
             wrong.append(given.lines[row])

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
+from textwrap import wrap
 
 from harness.report.drawing import palette
 from harness.report.drawing.axes import (
@@ -96,6 +97,7 @@ def _frame(
     left, bottom, top, right = (44.0, 26.0, 12.0, 10.0) if form == "card" else (_LEFT, 52.0, 34.0, 14.0)
     if labels and form == "wide":
         right = min(size[0] * 0.34, 22 + CHARACTER * max((len(line.label) for line in panel.lines), default=0))
+    right = max(right, _half_of_last_tick(panel, form))
     return PanelFrame(
         corner[0] + left,
         corner[1] + bottom,
@@ -105,6 +107,15 @@ def _frame(
         _y_range(panel),
         panel.logarithmic,
     )
+
+
+def _half_of_last_tick(panel: Panel, form: Form) -> float:
+    """px to the right of the frame that the text below its last measured value needs, which is centred there."""
+    if panel.categories or panel.rounded:
+        return 0.0
+    last = max((value for line in panel.lines for value in line.x), default=None)
+    digit = 0.6 * (FONT if form != "card" else _CARD_FONT)  # px, of which numbers consist
+    return 0.0 if last is None else digit * len(panel.x_text(last)) / 2
 
 
 def _panel(canvas: Canvas, panel: Panel, frame: PanelFrame, form: Form, labels: bool) -> None:
@@ -117,7 +128,7 @@ def _panel(canvas: Canvas, panel: Panel, frame: PanelFrame, form: Form, labels: 
         _line(canvas, panel, line, frame, form)
     if form == "card":
         return
-    canvas.text((frame.left + frame.right) / 2, frame.bottom - 42, panel.x_label, horizontal="center")
+    _x_label(canvas, panel, frame, form)
     if panel.title:
         letters = (frame.right - frame.left) / CHARACTER
         canvas.text(frame.left, frame.top + 13, shorten(panel.title, letters))
@@ -128,6 +139,16 @@ def _panel(canvas: Canvas, panel: Panel, frame: PanelFrame, form: Form, labels: 
         canvas.text(frame.left, frame.top + 13, panel.y_label, palette.SOFT)
     if labels and form == "wide":
         _label_ends(canvas, panel, frame)
+
+
+def _x_label(canvas: Canvas, panel: Panel, frame: PanelFrame, form: Form) -> None:
+    """What x is, in one line where it fits, else in two."""
+    middle = (frame.left + frame.right) / 2
+    # of the panel on both sides of the middle of its axis: all of its left margin, and a usual one on the right
+    room = frame.right - frame.left + 2 * (_LEFT if form == "wide" else canvas.width - frame.right)
+    lines = wrap(panel.x_label, int(room / CHARACTER)) if len(panel.x_label) * CHARACTER > room else [panel.x_label]
+    for place, text in enumerate(lines):
+        canvas.text(middle, frame.bottom - (42 if len(lines) == 1 else 33) - 15 * place, text, horizontal="center")
 
 
 def _line(canvas: Canvas, panel: Panel, line: Line, frame: PanelFrame, form: Form) -> None:

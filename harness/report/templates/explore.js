@@ -148,7 +148,7 @@ document.querySelectorAll("table.explored").forEach((table) => {
   columns.forEach((column) => {
     const button = make("button", { type: "button" }, ...column.cell.childNodes);
     column.cell.append(button);
-    button.addEventListener("click", () => {
+    column.cell.addEventListener("click", () => {  // beside the button too: a heading is wider than its text
       state.down = state.sort === column.name && !state.down;
       state.sort = column.name;
       change();

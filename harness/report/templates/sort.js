@@ -8,7 +8,7 @@ document.querySelectorAll("table.sortable").forEach(function (table) {
     while (heading.firstChild) button.appendChild(heading.firstChild);
     heading.appendChild(button);
     heading.setAttribute("aria-sort", "none");
-    button.addEventListener("click", function () {
+    heading.addEventListener("click", function () {  // beside the button too: a heading is wider than its text
       var up = heading.getAttribute("aria-sort") !== "ascending";
       table.querySelectorAll("th[data-sort]").forEach(function (other) { other.setAttribute("aria-sort", "none"); });
       heading.setAttribute("aria-sort", up ? "ascending" : "descending");
