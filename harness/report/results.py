@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -22,6 +22,7 @@ from harness.report.stability.matrix import Matrix, matrix
 from harness.report.sweeps.difference import Difference
 from harness.report.sweeps.page import newest_difference
 from harness.report.truth import TruthResults
+from harness.report.verdicts import worded
 from harness.store.records import ComparisonRecord, ExperimentRecord
 from harness.store.tables import comparisons, conditions, controls, experiments, machines, runs
 
@@ -46,7 +47,12 @@ class Results:
     @cached_property
     def records(self) -> list[ExperimentRecord]:
         """Every experiment, by name."""
-        return experiments(self.database)
+        return [
+            replace(
+                record, expectations=tuple(map(worded, record.expectations)), claims=tuple(map(worded, record.claims))
+            )
+            for record in experiments(self.database)
+        ]
 
     @cached_property
     def pages(self) -> list[ExperimentPage]:

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from markupsafe import Markup
 
 from harness.report.markup import render
-from harness.report.words import leaf_label
+from harness.report.words import in_words, leaf_label
 from harness.store.records import VerdictRow
+
+
+def worded(row: VerdictRow) -> VerdictRow:
+    """The verdict with its metric in words, here and in each of its groups."""
+    metric = str(row.criterion.get("metric", ""))
+    groups = [
+        {**group, "statement": in_words(str(group.get("statement", "")), metric)}
+        for group in row.detail.get("groups") or []
+    ]
+    return replace(row, statement=in_words(row.statement, metric), detail={**row.detail, "groups": groups})
 
 
 def verdicts_html(identity: str, title: str, rows: Sequence[VerdictRow]) -> Markup:

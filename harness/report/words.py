@@ -71,6 +71,21 @@ def metric_title(name: str) -> str:
     return METRICS[name].heading if name in METRICS else name.replace("_", " ")
 
 
+def in_words(statement: str, metric: str) -> str:
+    """What was found of a metric, which stands at its beginning, with the metric in words.
+
+    >>> in_words("pair_seconds at count=10 is 2.4 times that for count=5", "pair_seconds")
+    'object/object test time at count=10 is 2.4 times that for count=5'
+    >>> in_words("pair_tests grows as count^2.08", "pair_tests")
+    'number of object/object tests grows as count^2.08'
+    """
+    rest, title = statement.removeprefix(f"{metric} "), metric_title(metric)
+    if rest == statement:
+        return statement
+    counted = "number of " if title.split(" per ")[0].endswith("s") else ""
+    return f"{counted}{title} {rest}"
+
+
 def metric_unit(name: str) -> str:
     """The unit of a metric as it is written behind a number, "1" for none or a metric this version does not know."""
     unit = METRICS[name].unit if name in METRICS else "1"

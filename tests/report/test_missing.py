@@ -106,4 +106,4 @@ def test_a_whole_sweep_says_nothing_of_the_kind_and_what_it_broke_is_red(tmp_pat
     overview = dict(render(path))["index.html"]
     assert "missing" not in overview.split("</h1>")[0].split("<main")[1]
     assert "Broken or failed" in overview
-    assert "energy_drift is wrong" in overview
+    assert "energy drift is wrong" in overview
