@@ -1,7 +1,7 @@
 """Support functions: the vertex of a hull that reaches farthest in a direction, found in a time that hardly grows.
 
 Directions are sorted into cells of an octahedron unfolded to a square. Each cell lists the vertices that are farthest
-for some direction in it, two or less on average, so that a query looks up one cell and compares those few. Unlike
+for some direction in it, about two on average, so that a query looks up one cell and compares those few. Unlike
 climbing along edges it needs no start, no edges, and no trust in a hull's convexity.
 """
 
