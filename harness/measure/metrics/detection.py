@@ -26,6 +26,7 @@ METRICS = (
         "cells_per_body", "mean number of grid cells that a body's bounding cube overlaps, last frame", tabulated=False
     ),
     counter(
-        "cells_per_body_most", "largest number of grid cells that a body's cube overlaps, last frame", tabulated=False
+        "cells_per_body_most", "largest number of grid cells that a body's cube overlaps, last frame",
+        title="largest number of cells of one body", tabulated=False,
     ),
 )  # fmt: skip
