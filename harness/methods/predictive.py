@@ -67,6 +67,8 @@ class Predictive(Method):
             take("wall_search", False, "response is none: the box folds the path of each bounding sphere exactly")
         elif solid:
             take("wall_search", True, "the support function of the hull, once a bounding sphere meets the wall")
+        if solid:
+            _decide_contact_end(law, decisions)
         _decide_lasting_contacts(law, decisions)
         decide_penetration(scene, decisions)
         decide_recording(recorded, decisions)
@@ -104,6 +106,16 @@ def _decide_pairs(scene: Scene, law: MotionLaw, decisions: Decisions) -> None:
         take("mesh_search", True, "surfaces are advanced to their contact when their hulls meet, not before")
     else:
         take("mesh_search", False, "every mesh is convex, its own hull, and no body can be inside an equal one")
+
+
+def _decide_contact_end(law: MotionLaw, decisions: Decisions) -> None:
+    """Whether a contact lasts, and is followed."""
+    if law.response == "none":
+        why = "a pair that touches is followed until it parts, for only then can it begin to touch again"
+        decisions.take("contact_end", True, why, fixed="hits would be missed")
+    else:
+        why = "a touch is answered, and over at once"
+        decisions.take("contact_end", False, why, fixed=why)
 
 
 def _decide_lasting_contacts(law: MotionLaw, decisions: Decisions) -> None:
@@ -145,7 +157,9 @@ class EventDriven:
 
     def __init__(self, scene: Scene, plan: Plan, tolerance: float) -> None:
         self._scene, self._plan, self._tolerance = scene, plan, tolerance
-        self._form = Form(scene, surface=plan.keeps("mesh_search")) if plan.keeps("orientations") else None
+        self._form = None
+        if plan.keeps("orientations"):
+            self._form = Form(scene, surface=plan.keeps("mesh_search"), followed=plan.keeps("contact_end"))
 
     def fly(self, law: MotionLaw, *, traced: bool = False, observed: bool = True) -> Outcome:
         """Fly the scene for `law.duration`, event by event; what is due at that very time still happens.

@@ -9,6 +9,7 @@ that nothing passes through those.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 from math import sqrt
 from typing import NamedTuple
@@ -56,6 +57,7 @@ def no_field() -> ClearanceField:
     return ClearanceField(np.empty((0, 0, 0), np.float32), np.empty(0), np.empty((0, 4)))
 
 
+@lru_cache(maxsize=8)  # a run loads its pipeline twice
 def clearance_field(mesh: Mesh, nodes: int = NODES) -> ClearanceField:
     """The field of a mesh of diameter 1."""
     from scipy.ndimage import label  # with what follows: only a run that follows contacts of surfaces needs scipy

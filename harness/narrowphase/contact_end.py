@@ -40,7 +40,7 @@ MOST_CREEPING = 2_000
 # bodies may move in a step though nothing proves that they touch.
 ENDING_GAP, RESOLUTION = 1.125, 0.125
 # How many levels above the triangles that crossed the next crossing is searched for first, and for how many steps there
-# and from the roots.
+# and from the roots. To search around more triangles where that one lasts less takes more time than the steps it saves.
 LEVELS_UP = 2
 NEARBY_STEPS = 100
 STEPS = 100_000
@@ -50,9 +50,6 @@ LESS = 0.3
 # Of the sum of the sizes: a distance. Where no crossing lasts longer than points take to move that far, at first and
 # near the end of a contact, it is not worth asking how deep the bodies are in each other.
 SHALLOW = 5e-4
-# Of that: where the next one lasts no longer, it is searched for around more triangles, for more steps; from
-# the roots that takes three times as long.
-MUCH_LESS, LEVELS_WIDER, WIDER_STEPS = 1.0, 3, 300
 # Where the bodies are held by their gap alone, after how many instants the whole surfaces are searched for a crossing.
 SEARCH_EVERY = 8
 
@@ -229,13 +226,6 @@ def hold_of_surfaces(
     if leaves.a < 0:
         points, leaves = nearest_points(trees, pose, last.leaves, margin), last.leaves
         gap = points.gap
-    # triangles that crossed and are still near have just parted: what is around them mostly has, too
-    if gap > near or (gap == 0.0 and not found.lasts > MUCH_LESS * last.enough and last.instants == 0):
-        for _ in range(LEVELS_WIDER):
-            start = NodePair(trees.a.parent[start.a], trees.b.parent[start.b])
-        wider = longest_crossing(trees, seen, start, last.enough, WIDER_STEPS, stack)
-        if wider.leaves.a >= 0 and (wider.lasts > found.lasts or found.leaves.a < 0):
-            found, gap, leaves = wider, 0.0, wider.leaves
     if gap > near:  # a search for any triangles that are near is a search for any that cross as well
         gap, leaves = triangles_within(trees, pose, near, margin, stack)
         if gap > near:

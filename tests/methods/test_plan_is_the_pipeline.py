@@ -172,13 +172,14 @@ def test_the_grid_of_a_plan_is_the_one_that_is_made():
 
 
 @pytest.mark.parametrize(
-    ("shape", "name", "attribute", "values"),
+    ("shape", "name", "found", "values"),
     [
-        ("sphere", "neighbour_lists", "search", ("cells", "lists")),
-        ("mesh", "mesh_search", "concave", (True, False)),
+        ("sphere", "neighbour_lists", lambda made: made.search, ("cells", "lists")),
+        ("mesh", "mesh_search", lambda made: made._solid.body.concave, (True, False)),
+        ("mesh", "contact_end", lambda made: made._solid.body.shapes.field.values.size > 0, (False, True)),
     ],
 )
-def test_an_event_driven_pipeline_is_what_its_plan_says(shape, name, attribute, values, monkeypatch):
+def test_an_event_driven_pipeline_is_what_its_plan_says(shape, name, found, values, monkeypatch):
     """Put the other way, these stages would change digits of a hit's time, so that nobody may force them; but the plan
     alone decides on them."""
     scene = crowd(shape)
@@ -190,8 +191,7 @@ def test_an_event_driven_pipeline_is_what_its_plan_says(shape, name, attribute, 
         monkeypatch.setattr(predictive, kind, lambda *a, _kind=original, **k: made.append(_kind(*a, **k)) or made[-1])
     for one in (plan, flipped(plan, name)):
         method.load(scene, one).fly(MotionLaw(0.01, 0.01, "reflect"))
-    found = [one.search if attribute == "search" else one._solid.body.concave for one in made]
-    assert tuple(found) == values
+    assert tuple(found(one) for one in made) == values
 
 
 @pytest.mark.slow

@@ -200,6 +200,21 @@ def test_a_run_is_the_same_to_the_bit_however_it_is_sampled(shape, response):
     assert whole.counters == pieces.counters
 
 
+def test_contacts_followed_with_fields_begin_when_they_do_without_and_are_followed_in_fewer_steps():
+    scene = crowd(mesh_named(PUMPKIN), 20, 2.0, 7, "mesh", spin=10.0)
+    plain, helped = (
+        SolidSimulation(scene.bodies, scene.box, Form(scene, followed=followed), "none", record=True)
+        for followed in (False, True)
+    )
+    for simulation in (plain, helped):
+        simulation.advance(1.5)
+    assert sequence(plain.events) == sequence(helped.events)
+    assert helped.events["time"] == pytest.approx(plain.events["time"], abs=1e-9)
+    before, after = plain.counters, helped.counters
+    assert before.pop("advancement_steps") - after.pop("advancement_steps") > 200 * before["pair_hits"] > 8000
+    assert before == after
+
+
 def test_bodies_in_another_order_meet_as_before():
     scene = crowd(mesh_named(PUMPKIN), 12, 1.7, 11, "mesh", ratio=5.0)
     bodies, order = scene.bodies, np.random.default_rng(0).permutation(12)

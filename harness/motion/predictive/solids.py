@@ -18,7 +18,7 @@ from harness.motion.predictive.double_double import DOUBLE_DOUBLE, angle_after, 
 from harness.motion.predictive.state import Record, Records, World
 from harness.motion.predictive.windows import Windows
 from harness.narrowphase.body_shapes import Shapes, shape_of, shapes_of_bodies
-from harness.narrowphase.clearance_field import no_field
+from harness.narrowphase.clearance_field import clearance_field, no_field
 from harness.narrowphase.free_flight import Motion
 from harness.narrowphase.mesh_advancement import MeshShape
 from harness.narrowphase.support import support_map
@@ -39,13 +39,14 @@ class Form:
     ----------
     scene : Scene of shape `hull` or `mesh`
     surface : whether the surface is to be searched where hulls touch; by default where the scene needs it
+    followed : whether contacts of surfaces are to be followed to their end, fast
     """
 
-    def __init__(self, scene: Scene, surface: bool | None = None) -> None:
+    def __init__(self, scene: Scene, surface: bool | None = None, *, followed: bool = False) -> None:
         if scene.shape == "sphere":
             raise ValueError("a sphere has no surface to search")
         self.concave = needs_its_surface(scene) if surface is None else surface
-        shapes = [_shape(mesh, surface=self.concave) for mesh in scene.meshes]
+        shapes = [_shape(mesh, surface=self.concave, followed=followed) for mesh in scene.meshes]
         self._shapes, self._mesh_of = shapes, scene.mesh_of
 
     def shapes(self, order: Ints) -> Shapes:
@@ -53,10 +54,11 @@ class Form:
         return shapes_of_bodies(self._shapes, self._mesh_of[order])
 
 
-def _shape(mesh: Mesh, *, surface: bool) -> MeshShape:
+def _shape(mesh: Mesh, *, surface: bool, followed: bool) -> MeshShape:
     """A mesh of diameter 1, of which the surface is one triangle where it is not searched."""
     tree = triangle_tree(mesh.vertices, mesh.faces if surface else mesh.faces[:1])
-    return MeshShape(support_map(mesh.hull.vertices), tree, 0.5, no_field())
+    field = clearance_field(mesh) if surface and followed else no_field()
+    return MeshShape(support_map(mesh.hull.vertices), tree, 0.5, field)
 
 
 def needs_its_surface(scene: Scene) -> bool:
