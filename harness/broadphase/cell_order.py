@@ -36,12 +36,13 @@ class Cells(NamedTuple):
     ----------
     members : (n,) the bodies by level, those of a level by their number
     radii : (n,) of each member, m
-    levels : (levels,) of LEVEL, with reach, budget, begin and end given; the rest is written every frame
+    levels : (levels,) of LEVEL, with reach and what is of the class given; the rest is written every frame
     start : (sum of budgets + 1,) written: the first slot of each cell
     cell_of : (n,) written: each member's cell
     rows : (n,) of ROW, written: the bodies by bucket
     slots : (n, 2) written: each slot's cell and body
-    columns : (4, n + LANES) written: each slot's x, y, z and radius, m; each by itself, to be compared several at once
+    columns : (4, n + room) written: each slot's x, y, z and radius, m; each by itself, to be compared several at once.
+        What is compared with the last slots' neighbours beyond them is left out of every answer
     """
 
     members: Indices

@@ -12,4 +12,4 @@ def make(radii: Floats, box: Box, size_classes: bool) -> UniformGrid:
     return (HierarchicalGrid if size_classes else UniformGrid)(radii, box)
 
 
-SCHEME = Scheme("a grid of cells", make, "a level of cells for each factor of three")
+SCHEME = Scheme("a grid of cells", make, "levels of cells, one for each factor of three or for several that are sparse")

@@ -22,9 +22,14 @@ Point = tuple[float, float, float]
 LEVEL = np.dtype(
     [
         ("reach", np.float64),  # m, the largest radius
+        ("least", np.float64),  # m, the smallest radius
         ("budget", np.int64),  # cells it may have
         ("begin", np.int64),  # its bodies have the slots from here
         ("end", np.int64),  # up to here
+        ("class_least", np.float64),  # the same of its size class alone
+        ("class_budget", np.int64),
+        ("class_begin", np.int64),
+        ("class_end", np.int64),
         ("first", np.int64),  # its first cell
         ("cells", np.int64),  # how many it has
         ("row", np.int64),  # from a cell to its neighbour along y
@@ -48,25 +53,6 @@ class Block(NamedTuple):
     y1: int
     z0: int
     z1: int
-
-
-@kernel
-def fit_lattices(positions: Floats, half: Floats, levels: Levels) -> None:
-    """Spread each level's lattice over the part of the box where bodies are; all positions must be finite.
-
-    Bodies beyond the walls belong to the border cells, so that one that has shot far out does not thin out the lattice.
-    """
-    low, high = bounds(positions, half)
-    x, wide = within_box(low[0], high[0], half[0])
-    y, deep = within_box(low[1], high[1], half[1])
-    z, tall = within_box(low[2], high[2], half[2])
-    first = 0
-    for index in range(len(levels)):
-        level = levels[index]
-        level.low_x, level.low_y, level.low_z = x, y, z
-        fit_cells(level, wide, deep, tall)
-        level.first = first
-        first += level.cells
 
 
 @kernel
@@ -182,16 +168,22 @@ def cell_along(x: float, low: float, scale: float, last: float) -> int:
 
 
 @kernel
-def block_around(level: Level, x: float, y: float, z: float, reach: float) -> Block:
-    """The level's cells within reach of a point along each axis: no body there is in any other cell."""
+def block_around(lattice: Lattice, x: float, y: float, z: float, reach: float) -> Block:
+    """The cells of a lattice within reach of a point along each axis: no body there is in any other cell."""
     return Block(
-        cell_along(x - reach, level.low_x, level.scale_x, level.last_x),
-        cell_along(x + reach, level.low_x, level.scale_x, level.last_x),
-        cell_along(y - reach, level.low_y, level.scale_y, level.last_y),
-        cell_along(y + reach, level.low_y, level.scale_y, level.last_y),
-        cell_along(z - reach, level.low_z, level.scale_z, level.last_z),
-        cell_along(z + reach, level.low_z, level.scale_z, level.last_z),
+        cell_along(x - reach, lattice.low_x, lattice.scale_x, lattice.last_x),
+        cell_along(x + reach, lattice.low_x, lattice.scale_x, lattice.last_x),
+        cell_along(y - reach, lattice.low_y, lattice.scale_y, lattice.last_y),
+        cell_along(y + reach, lattice.low_y, lattice.scale_y, lattice.last_y),
+        cell_along(z - reach, lattice.low_z, lattice.scale_z, lattice.last_z),
+        cell_along(z + reach, lattice.low_z, lattice.scale_z, lattice.last_z),
     )
+
+
+@kernel
+def cells_of(level: Level) -> float:
+    """Cells of a level in which bodies can be, without the empty border."""
+    return float((level.last_x + 1.0) * (level.last_y + 1.0) * (level.last_z + 1.0))
 
 
 @kernel

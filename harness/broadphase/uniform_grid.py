@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from harness.arrays import Floats, Pairs
 from harness.broadphase import cells
 from harness.broadphase.cell_order import ROW, Cells
-from harness.broadphase.lanes import LANES
 from harness.broadphase.levels import LEVEL, Levels
 from harness.broadphase.pairs import checked_positions, checked_radii, unpack
 from harness.scene.box import Box
@@ -45,11 +44,11 @@ class UniformGrid:
             members.astype(np.int32),
             self.radii[members],
             levels,
-            np.empty(int(levels["budget"].sum()) + 1, np.int32),
+            np.empty(int(levels["class_budget"].sum()) + 1, np.int32),
             np.empty(count, np.int32),
             np.empty(count, ROW),
             np.empty((count, 2), np.int32),
-            np.zeros((4, count + LANES)),
+            np.zeros((4, count + cells.FIRST)),
         )
         self._cells = Cells(*self._arrays)
         self._keys = np.empty(count + 1, np.int64)
@@ -117,7 +116,7 @@ class UniformGrid:
 
 
 def plan_levels(radii: Floats, level: NDArray[np.int64]) -> Levels:
-    """(levels,) of LEVEL from the bodies in the order of their level: how large, whose slots, how many cells.
+    """(levels,) of LEVEL from the bodies in the order of their size class: how large, whose slots, how many cells.
 
     Half of the cells are shared out by population. The other half equally, or the lattice of a few large bodies among
     many small ones would be so coarse that every small one is tested with every large one.
@@ -126,9 +125,10 @@ def plan_levels(radii: Floats, level: NDArray[np.int64]) -> Levels:
     _, begin = np.unique(level, return_index=True)
     begin = begin if count else np.zeros(1, np.int64)
     levels = np.zeros(len(begin), LEVEL)
-    levels["begin"] = begin
-    levels["end"] = np.append(begin[1:], count)
+    levels["class_begin"] = begin
+    levels["class_end"] = np.append(begin[1:], count)
     levels["reach"] = np.maximum.reduceat(radii, begin) if count else 1.0
-    share = (levels["end"] - levels["begin"] + count / len(levels)) / 2
-    levels["budget"] = 8 + CELLS_PER_BODY * share  # a lattice of one cell needs 8, with its empty border
+    levels["class_least"] = np.minimum.reduceat(radii, begin) if count else 1.0
+    share = (levels["class_end"] - levels["class_begin"] + count / len(levels)) / 2
+    levels["class_budget"] = 8 + CELLS_PER_BODY * share  # a lattice of one cell needs 8, with its empty border
     return levels

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from harness.kernel import loop
-from harness.motion.predictive.state import CANDIDATES, LANES, MOTION, aligned
+from harness.motion.predictive.memory import aligned
+from harness.motion.predictive.state import CANDIDATES, LANES, MOTION
 from harness.motion.predictive.touches import touch_first
 from harness.narrowphase.spheres import time_to_touch
 

@@ -154,24 +154,6 @@ def gather_block(cells: Cells, grid: Record, block: Block, found: Indices, n: in
 
 
 @step
-def gather_wide(cells: Cells, grid: Record, block: Block, found: Indices) -> int:
-    """List the spheres of a block of cells that hold several each: the first of every cell, the second of every cell...
-
-    How many a cell holds is at random, and the branch at its end would be mispredicted.
-    """
-    empty = cells.following.size - 1
-    n = 0
-    for x in range(block.from_x, block.to_x + 1):
-        for y in range(block.from_y, block.to_y + 1):
-            cell = cell_number(grid, x, y, 0)
-            for z in range(block.from_z, block.to_z + 1):
-                p = cells.heads[np.uintp(cell + z)]
-                found[np.uintp(n)] = p
-                n += p != empty
-    return gather_following(cells, found, 0, n)
-
-
-@step
 def gather_following(cells: Cells, found: Indices, begin: int, n: int) -> int:
     """Append those that follow in their cells, where the first of each cell stand in the list from `begin` on."""
     empty = cells.following.size - 1

@@ -24,24 +24,29 @@ from harness.motion.predictive.hits import hit_pair, hit_wall, note_onset
 from harness.motion.predictive.ignored import without_ignored
 from harness.motion.predictive.larger import register_all, register_anew
 from harness.motion.predictive.lookahead import prefetch_ahead, prefetch_next
-from harness.motion.predictive.neighbours import renew
+from harness.motion.predictive.neighbours import renew, settle
 from harness.motion.predictive.pair_search import first_onset, first_touch
 from harness.motion.predictive.state import NOBODY, World
 
 
 @loop
-def populate(world: World, placed: bool) -> None:
-    """Put all spheres into their cells and rebuild the event queue.
+def populate(world: World, placed: bool) -> bool:
+    """Put all spheres into their cells and rebuild the event queue. Returns False if a cell has no room.
 
-    Placed spheres go into the cells that their records name, others into those where their positions are.
+    Those with neighbour lists go into the cells of their anchors. Of others, placed spheres go into the cells that
+    their records name, the rest into those where their positions are.
     """
     for k in range(world.spheres.motions.size):
-        if placed:
+        if world.rules.neighbours == NeighbourSearch.LISTS:
+            if not settle(world, k):
+                return False
+        elif placed:
             insert(world.cells, world.spheres.schedule, k)
         else:
             insert_by_position(world.cells, world.spheres, k)
     register_all(world, placed)
     tournament.rebuild(world.queue, world.spheres.schedule)
+    return True
 
 
 def event_loop(deep: bool, several: bool) -> Callable[[World, float, int], Stop]:
@@ -162,6 +167,36 @@ def predict(world: World, k: int, now: float, after: FollowUp, several: bool) ->
 @step
 def schedule_next(world: World, k: int, now: float, several: bool) -> None:
     """Schedule the earliest of sphere k's pair candidate, walls, cell faces and renewal."""
+    own = world.spheres.schedule[k]
+    due = own.pair_time
+    if world.rules.neighbours == NeighbourSearch.LISTS and stays(world, k, due):
+        own.kind = Event.PAIR
+    else:
+        due = choose_next(world, k, several)
+    enqueue(world, k, max(due, now))
+
+
+@step
+def stays(world: World, k: int, time: float) -> bool:
+    """Whether sphere k is still within its walls and near its anchor at a time; no division tells when it leaves them.
+
+    Where rounding could decide, the answer is no.
+    """
+    motion, anchors, rules = world.spheres.motions[k], world.lists.anchors, world.rules
+    flown = time - motion.time
+    inside = flown < inf
+    square = 0.0
+    for axis in range(3):
+        x = motion.position[axis] + motion.velocity[axis] * flown
+        inside &= abs(x) < (rules.half_box[axis] - motion.radius) * (1.0 - 1e-12)
+        off = x - anchors[k, axis]
+        square += off * off
+    return bool(inside & (square < 0.2498 * rules.skin * rules.skin))
+
+
+@step
+def choose_next(world: World, k: int, several: bool) -> float:
+    """Note the earliest of sphere k's pair candidate, walls, cell faces and renewal. Returns when it is due, s."""
     cells, rules = world.cells, world.rules
     motion, own = world.spheres.motions[k], world.spheres.schedule[k]
     begin = motion.time
@@ -203,4 +238,4 @@ def schedule_next(world: World, k: int, now: float, several: bool) -> None:
         kind = Event.PAIR if due < inf else Event.NOTHING
     own.kind = kind
     own.face = met
-    enqueue(world, k, max(due, now))
+    return due

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from harness.arrays import Floats
+from harness.motion.predictive.memory import filled
 from harness.motion.predictive.order import REORDERED_FROM
 from harness.motion.predictive.state import ANCHOR, GRID, LARGER, Cells, Records
 
@@ -56,8 +57,8 @@ def empty_grids(half_box: Floats, radii: Floats, skin: float) -> Cells:
     count = len(radii)
     anchors, room = empty_anchors(grids, radii, classes)
     return Cells(
-        heads=np.full(int(sizes.sum()), count, dtype=np.uint32),
-        following=np.full(count + 1, count, dtype=np.uint32),
+        heads=filled(int(sizes.sum()), count, np.uint32),
+        following=filled(count + 1, count, np.uint32),
         grids=grids,
         larger=np.zeros(int(sizes.sum()) if len(grids) > 1 else 0, dtype=LARGER),
         anchors=anchors,

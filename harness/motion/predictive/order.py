@@ -53,6 +53,7 @@ def reorder(world: World) -> None:
     if len(lists.members):
         lists.anchors[:] = lists.anchors[order]
         lists.members[:] = lists.members[order]
+        lists.cells["count"] = 0
         lists.members["who"] = moved_to[np.minimum(lists.members["who"], count - 1)]
     if len(cells.anchors):
         cells.anchors[:] = cells.anchors[order]

@@ -9,7 +9,9 @@ from harness.motion.predictive.codes import Event, NeighbourSearch
 from harness.motion.predictive.grids import empty_grids, size_classes
 from harness.motion.predictive.ignored import ignored_by_label
 from harness.motion.predictive.initial import InitialState
+from harness.motion.predictive.memory import aligned, filled
 from harness.motion.predictive.order import along_curve
+from harness.motion.predictive.rosters import FEW
 from harness.motion.predictive.state import (
     CANDIDATES,
     CLOCK,
@@ -18,9 +20,9 @@ from harness.motion.predictive.state import (
     EVENT,
     EVENT_STATE,
     MOTION,
-    NEIGHBOURS,
     NOBODY,
     ONSET,
+    ROSTER,
     SCHEDULE,
     SUM,
     SUMS,
@@ -32,7 +34,6 @@ from harness.motion.predictive.state import (
     Spheres,
     Totals,
     World,
-    aligned,
 )
 
 # Recorded events handed over at a time.
@@ -64,35 +65,38 @@ def prepare(start: InitialState, rules: Rules, ignored: Pairs, record: bool, sta
     schedule["kind"] = Event.UNSCHEDULED
     schedule["label"] = order
     schedule["size_class"] = size_classes(start.radii, start.half_box)[order]
+    cells = empty_grids(start.half_box, motions["radius"], rules.skin)
     return World(
         spheres=Spheres(motions, schedule, contacts=no_contacts(n)),
         queue=unscheduled(n),
-        cells=empty_grids(start.half_box, motions["radius"], rules.skin),
-        lists=empty_lists(motions, rules.neighbours),
+        cells=cells,
+        lists=empty_lists(motions, rules.neighbours, len(cells.heads)),
         ignored=ignored_by_label(n, ignored),
         rules=rules,
         totals=no_totals(),
         log=np.zeros(LOG_SIZE if record else 0, dtype=EVENT),
         states=np.zeros(LOG_SIZE if record and states else 0, dtype=EVENT_STATE),
-        scratch=Scratch(found=np.zeros(n + 2, dtype=np.uint32), lanes=aligned(1, CANDIDATES)),
+        scratch=Scratch(found=np.zeros(n + 2 + FEW, dtype=np.uint32), lanes=aligned(1, CANDIDATES)),
     )
 
 
 def unscheduled(n: int) -> EventQueue:
     """All events of n spheres unscheduled."""
     leaves = 1 << max(n - 1, 1).bit_length()
-    times = np.full(2 * leaves, np.inf)
+    times = filled(2 * leaves, np.inf, np.float64)
     times[leaves : leaves + n] = 0.0
-    winners = np.zeros(2 * leaves, dtype=np.int32)
+    winners = aligned(2 * leaves, np.int32)
     winners[leaves : leaves + n] = np.arange(n)
     return EventQueue(times=times, time_bits=times.view(np.int64), winners=winners)
 
 
-def empty_lists(motions: Records, neighbours: int) -> Lists:
+def empty_lists(motions: Records, neighbours: int, cells: int) -> Lists:
     """Neighbour lists with nobody in them, anchored where the spheres are; none at all for another search."""
-    n = len(motions) if neighbours == NeighbourSearch.LISTS else 0
-    anchors = np.column_stack([motions["position"], motions["radius"]])[:n].copy()
-    return Lists(anchors=anchors, members=aligned(n, NEIGHBOURS))
+    listed = neighbours == NeighbourSearch.LISTS
+    n = len(motions) if listed else 0
+    anchors = aligned(4 * n, np.float64).reshape(n, 4)
+    anchors[:, :3], anchors[:, 3] = motions["position"][:n], motions["radius"][:n]
+    return Lists(anchors=anchors, members=aligned(n, ROSTER), cells=aligned(cells if listed else 0, ROSTER))
 
 
 def no_contacts(n: int) -> Records:

@@ -84,7 +84,7 @@ class Simulation:
         self._start = start
         self._start_virial = self._momentum_by_position(start.positions)
         self.time = 0.0
-        populate(self._world, False)
+        self._populate(False)
 
     def __len__(self) -> int:
         return len(self._start)
@@ -101,7 +101,7 @@ class Simulation:
                 self._make_room()
             else:
                 reorder(self._world)
-                populate(self._world, True)
+                self._populate(True)
         if reason == Stop.SPENT:
             self.time = self._last_event_time
             return False
@@ -236,8 +236,12 @@ class Simulation:
             return (fly_several_deep if deep else fly_several)(self._world, until, budget)
         return (fly_deep if deep else fly)(self._world, until, budget)
 
+    def _populate(self, placed: bool) -> None:
+        if not populate(self._world, placed):
+            self._make_room()
+
     def _make_room(self) -> None:
-        """Go on with cells from this moment: more spheres are on top of each other than a neighbour list holds."""
+        """Go on with cells from this moment: more spheres are on top of each other than a roster holds."""
         world = self._world
         now = float(world.totals.clock["now"][0])
         motions = world.spheres.motions
@@ -248,7 +252,7 @@ class Simulation:
         world.queue.times[leaves : leaves + len(self)] = now
         self._world = world._replace(
             cells=empty_grids(self._start.half_box, self._start.radii, 0.0),
-            lists=empty_lists(motions, NeighbourSearch.CELLS),
+            lists=empty_lists(motions, NeighbourSearch.CELLS, 0),
             rules=world.rules._replace(neighbours=NeighbourSearch.CELLS.value, skin=0.0),
         )
         populate(self._world, False)

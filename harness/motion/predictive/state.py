@@ -18,7 +18,6 @@ Longs = NDArray[np.int64]
 Records = Any  # an array of one of the types below; mypy knows no fields
 Record = Any  # one of its elements
 
-LINE = 64  # bytes of a cache line
 NOBODY = -1  # in place of a body, or of a window
 NEVER = int(np.array(np.inf).view(np.int64))  # the bits of the time of what never happens
 
@@ -154,9 +153,9 @@ CANDIDATES = np.dtype(
     align=True,
 )
 
-# The neighbours of a sphere: most lists fill one cache line, and none more than two.
+# The neighbours of a sphere, or who is anchored in a cell: most fill one cache line, and none more than two.
 CAPACITY = 31
-NEIGHBOURS = np.dtype([("count", np.uint32), ("who", np.uint32, CAPACITY)], align=True)
+ROSTER = np.dtype([("count", np.uint32), ("who", np.uint32, CAPACITY)], align=True)
 
 
 class Spheres(NamedTuple):
@@ -196,7 +195,8 @@ class Lists(NamedTuple):
     """Neighbours within touching distance + skin, of spheres that moved at most skin / 2 from their anchors."""
 
     anchors: Floats  # (n, 4) m, x, y, z and the radius: one line of the cache tells who is near
-    members: Records  # (n,) of NEIGHBOURS
+    members: Records  # (n,) of ROSTER
+    cells: Records  # (cells,) of ROSTER, who is anchored in each
 
 
 class Ignored(NamedTuple):
@@ -256,10 +256,3 @@ class World(NamedTuple):
     log: Records  # a chunk of recorded EVENTs; no room means no recording
     states: Records  # the EVENT_STATE of each, or no room: then they are not kept
     scratch: Scratch
-
-
-def aligned(count: int, kind: np.dtype[np.void]) -> Records:
-    """(count,) zeros of a type of whole cache lines, that start on a cache line."""
-    raw = np.zeros(count * kind.itemsize + LINE, dtype=np.uint8)
-    skip = -raw.ctypes.data % LINE
-    return raw[skip : skip + count * kind.itemsize].view(kind)

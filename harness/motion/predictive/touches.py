@@ -1,7 +1,7 @@
 """Which of its candidates a sphere touches first, four of them at once.
 
-The rows of four spheres are read as vectors and turned into columns, their times are solved together, and the earliest
-of each column is carried along in a register: no loop over a list of spheres makes LLVM write such code. Each operation
+The rows of four spheres are read into columns, their times are solved together, and the earliest of each column is
+carried along in a register: no loop over a list of spheres makes LLVM write such code. Each operation
 is rounded as in the other steps of the event loop, so that each time is that of
 `harness.narrowphase.spheres.time_to_touch`, to the bit.
 """
@@ -26,6 +26,7 @@ class _Vectors:
         from llvmlite import ir  # type: ignore[import-untyped]
 
         self._ir, self._builder, self._flags = ir, builder, tuple(sorted(RELAXED))
+        self.pair = ir.VectorType(ir.DoubleType(), 2)
         self.doubles, self.longs = ir.VectorType(ir.DoubleType(), FOUR), ir.VectorType(ir.IntType(64), FOUR)
 
     def constant(self, *values: float) -> Any:
@@ -69,10 +70,16 @@ class _Vectors:
         module = self._builder.module
         return self._builder.call(module.globals.get(name) or self._ir.Function(module, kind, name), [a])
 
-    def transposed(self, rows: list[Any]) -> list[Any]:
-        even = [self._shuffled(rows[k], rows[k + 1], 0, 4, 2, 6) for k in (0, 2)]
-        odd = [self._shuffled(rows[k], rows[k + 1], 1, 5, 3, 7) for k in (0, 2)]
-        return [self._shuffled(*pair, *places) for places in ((0, 1, 4, 5), (2, 3, 6, 7)) for pair in (even, odd)]
+    def columns(self, rows: list[list[Any]]) -> list[Any]:
+        """The columns of four rows that are given by pairs.
+
+        Pairs from two rows are read into one vector: that leaves half as many shuffles as reading half a row.
+        """
+        columns = []
+        for first, second, third, fourth in zip(*rows, strict=True):
+            even, odd = (self._shuffled(*both, 0, 1, 2, 3) for both in ((first, third), (second, fourth)))
+            columns += [self._shuffled(even, odd, *places) for places in ((0, 4, 2, 6), (1, 5, 3, 7))]
+        return columns
 
     def least(self, a: Any) -> Any:
         """The least of the four, in all places."""
@@ -129,32 +136,35 @@ def _touch_first(
         def at(base: Any, offset: Any, kind: Any) -> Any:
             return builder.bitcast(helpers.pointer_add(builder, base, offset), ir.PointerType(kind))
 
-        def at_present(number: Any) -> tuple[Any, Any]:
-            """A sphere's x, y, z, and what means nothing; its velocity and its radius."""
-            row = helpers.pointer_add(builder, rows, builder.mul(number, word(MOTION.itemsize)))
-            place, motion = (builder.load(at(row, word(offset), doubles), align=_BYTES) for offset in (0, _BYTES))
-            flown = vectors.minus(now, builder.extract_element(place, short(3)))
-            return vectors.plus(vectors.times(motion, vectors.everywhere(doubles, flown)), place), motion
+        present = vectors.everywhere(doubles, now)
 
-        own_place, own_motion = at_present(k)
-        # the radius taken negative, so that the difference of two rows holds the sum of theirs
-        own_motion = vectors.times(own_motion, vectors.constant(1.0, 1.0, 1.0, -1.0))
+        def pairs(number: Any) -> list[Any]:
+            """A sphere's x and y, z and own time, velocity along x and y, velocity along z and radius."""
+            row = helpers.pointer_add(builder, rows, builder.mul(number, word(MOTION.itemsize)))
+            return [builder.load(at(row, word(offset), vectors.pair), align=16) for offset in range(0, 64, 16)]
+
+        def at_present(rows: list[list[Any]]) -> tuple[list[Any], list[Any], Any]:
+            """Positions, velocities and radii of four spheres."""
+            x, y, z, time, *velocity, radius = vectors.columns(rows)
+            flown = vectors.minus(present, time)
+            moved = [vectors.times(along, flown) for along in velocity]
+            return [vectors.plus(*both) for both in zip(moved, (x, y, z), strict=True)], velocity, radius
+
+        own_position, own_velocity, own_radius = at_present([pairs(k)] * FOUR)
         best = helpers.alloca_once_value(builder, never)
         which = helpers.alloca_once_value(builder, ir.Constant(longs, [0] * FOUR))
         ties = helpers.alloca_once_value(builder, ir.IntType(FOUR)(0))
         with helpers.for_range(builder, builder.udiv(builder.add(count, word(FOUR - 1)), word(FOUR))) as loop:
             m = builder.mul(loop.index, word(FOUR))
-            gaps, velocities = [], []
+            read = []
             for column in range(FOUR):  # the last candidate fills the columns left over
                 place = builder.add(m, word(column))
                 place = builder.select(builder.icmp_signed("<", place, last), place, last)
-                p = builder.zext(builder.load(builder.gep(who, [builder.add(start, place)])), word)
-                there, motion = at_present(p)
-                gaps.append(vectors.minus(there, own_place))
-                velocities.append(vectors.minus(motion, own_motion))
-            velocity = vectors.transposed(velocities)
-            reach = velocity.pop()
-            meet, wait = vectors.waits(vectors.transposed(gaps)[:3], velocity, reach)
+                read.append(pairs(builder.zext(builder.load(builder.gep(who, [builder.add(start, place)])), word)))
+            position, velocity, radius = at_present(read)
+            gap = [vectors.minus(*both) for both in zip(position, own_position, strict=True)]
+            velocity = [vectors.minus(*both) for both in zip(velocity, own_velocity, strict=True)]
+            meet, wait = vectors.waits(gap, velocity, vectors.plus(radius, own_radius))
             here = builder.add(vectors.everywhere(longs, m), ir.Constant(longs, list(range(FOUR))))
             meet = builder.and_(meet, builder.icmp_signed("<", here, vectors.everywhere(longs, count)))
             due = builder.select(meet, vectors.plus(vectors.everywhere(doubles, now), wait), never)
