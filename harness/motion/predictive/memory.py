@@ -12,7 +12,9 @@ from itertools import cycle
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike
+from numpy.typing import DTypeLike, NDArray
+
+Bytes = NDArray[np.uint8]
 
 LINE = 64  # bytes of a cache line
 HUGE = 1 << 21  # bytes of a huge page
@@ -24,15 +26,26 @@ def aligned(count: int, kind: DTypeLike) -> Any:
     """(count,) zeros of a type, that start on a cache line."""
     kind = np.dtype(kind)
     size = count * kind.itemsize
-    if size >= HUGE and hasattr(mmap, "MADV_HUGEPAGE"):
+    raw, skip = (_in_huge_pages(size) if size >= HUGE else None) or _on_a_line(size)
+    return raw[skip : skip + size].view(kind)
+
+
+def _on_a_line(size: int) -> tuple[Bytes, int]:
+    raw = np.zeros(size + LINE, dtype=np.uint8)
+    return raw, -raw.ctypes.data % LINE
+
+
+def _in_huge_pages(size: int) -> tuple[Bytes, int] | None:
+    """None where the system has none, or not the room for them."""
+    if not hasattr(mmap, "MADV_HUGEPAGE"):
+        return None
+    try:
         pages = mmap.mmap(-1, size + 2 * HUGE, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
         pages.madvise(mmap.MADV_HUGEPAGE)
-        raw = np.frombuffer(pages, dtype=np.uint8)
-        skip = -raw.ctypes.data % HUGE + next(_begins)
-    else:
-        raw = np.zeros(size + LINE, dtype=np.uint8)
-        skip = -raw.ctypes.data % LINE
-    return raw[skip : skip + size].view(kind)
+    except OSError:
+        return None
+    raw = np.frombuffer(pages, dtype=np.uint8)
+    return raw, -raw.ctypes.data % HUGE + next(_begins)
 
 
 def filled(count: int, value: float, kind: DTypeLike) -> Any:
