@@ -27,7 +27,7 @@ class Threads:
     >>> Threads(1).parts(1000, 10)
     ((0, 1000),)
     >>> Threads(2).parts(100, 32)
-    ((0, 33), (33, 66), (66, 100))
+    ((0, 50), (50, 100))
     """
 
     def __init__(self, count: int = 1) -> None:
@@ -37,6 +37,8 @@ class Threads:
     def parts(self, items: int, fewest: int) -> tuple[tuple[int, int], ...]:
         """Where each part of so many items begins and ends; one part where there is nothing to share.
 
+        Parts are as many for each thread: of three parts, one of two threads would do twice the other's work.
+
         Parameters
         ----------
         items : how many there are
@@ -45,6 +47,7 @@ class Threads:
         if self.count == 1 or items < 2 * fewest:  # most frames, of which each asks: a microsecond counts
             return ((0, items),)
         parts = min(_PARTS * self.count, items // fewest)
+        parts -= parts % self.count if parts > self.count else 0
         return tuple((items * part // parts, items * (part + 1) // parts) for part in range(parts))
 
     def each(self, work: Callable[[int, int], Result], parts: tuple[tuple[int, int], ...]) -> list[Result]:
