@@ -13,6 +13,9 @@ from harness.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from harness.experiment.experiment import Experiment, Point
+    from harness.scene.scene_files import Opened
+
 # Of runs whose plans are kept: those of more take megabytes.
 _MOST_KEPT = 1000
 
@@ -55,39 +58,53 @@ def _planned(path: str, overrides: dict[str, str]) -> dict[str, Any]:
     InputError
         With everything that is wrong with it.
     """
-    from dataclasses import asdict
     from pathlib import Path
 
     from harness.backends.registry import ours
     from harness.backends.statement import missing
     from harness.experiment.kept_facts import keep_facts
-    from harness.runner.point import plan_of
     from harness.runner.preparation import prepare
-    from harness.runner.scene_of_point import SceneSizeError, build_scene
-    from harness.runner.servers import files_of
-    from harness.scene.launch import PlacementError
 
     experiments, meshes = prepare([path], overrides)
     experiment = experiments[0]
     backends = dict.fromkeys(point.engine.backend for point in experiment.points)
     lacking = {name: why for name in backends if (why := missing(name)) is not None}
     points = [point for point in experiment.points if point.engine.backend not in lacking]
-    runs: list[dict[str, Any]] = []
-    for point in points:
-        try:
-            scene = build_scene(point, files_of(experiment, point, meshes), experiment.measure.memory)
-        except (SceneSizeError, PlacementError) as error:
-            leaf = "count" if point.scene.bodies is None else "bodies"
-            raise InputError([experiment.leaf_problem(leaf, point.parameters[leaf], str(error))]) from error
-        plan = plan_of(point, scene)
-        stages = [asdict(stage) for stage in plan.stages]
-        runs.append({"parameters": point.parameters, "stages": stages, "warnings": list(plan.warnings)})
+    runs = _runs(experiment, points, meshes)
     planned = {"title": experiment.title, "swept": list(experiment.swept), "runs": runs, "lacking": [*lacking.values()]}
     plugins = {point.engine.backend for point in experiment.points if not ours(point.engine.backend)}
     if experiment.path == Path(path) and len(runs) <= _MOST_KEPT and not plugins:
         of_file = experiment.source, experiment.mesh_paths, experiment.poses_paths
         keep_facts("plan", experiment.path, overrides, *of_file, planned)
     return planned
+
+
+def _runs(experiment: Experiment, points: Sequence[Point], meshes: Opened) -> list[dict[str, Any]]:
+    """What each point does; the bodies of points of one scene are placed once, and one scene is held at a time."""
+    from dataclasses import asdict
+
+    from harness.runner.point import plan_of
+    from harness.runner.scene_of_point import SceneSizeError, build_scene
+    from harness.runner.servers import files_of
+    from harness.scene.launch import PlacementError
+
+    places_of_scene: dict[str, list[int]] = {}
+    for place, point in enumerate(points):
+        places_of_scene.setdefault(repr((point.scene, point.motion.poses)), []).append(place)
+    runs: dict[int, dict[str, Any]] = {}
+    for places in places_of_scene.values():
+        first = points[places[0]]
+        try:
+            scene = build_scene(first, files_of(experiment, first, meshes), experiment.measure.memory)
+        except (SceneSizeError, PlacementError) as error:
+            leaf = "count" if first.scene.bodies is None else "bodies"
+            raise InputError([experiment.leaf_problem(leaf, first.parameters[leaf], str(error))]) from error
+        for place in places:
+            plan = plan_of(points[place], scene)
+            stages = [asdict(stage) for stage in plan.stages]
+            parameters = points[place].parameters
+            runs[place] = {"parameters": parameters, "stages": stages, "warnings": list(plan.warnings)}
+    return [runs[place] for place in range(len(points))]
 
 
 def _show(planned: Mapping[str, Any]) -> None:

@@ -19,6 +19,7 @@ from harness.measure.clocks import Clock
 from harness.measure.conservation import Conservation, energy
 from harness.measure.kinetics import Kinetics
 from harness.methods.culled import equal_sizes
+from harness.methods.ill_posed import ill_posed
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.penetration import Penetration
 from harness.methods.stages import Decisions, Plan
@@ -72,7 +73,7 @@ class Predictive(Method):
         _decide_lasting_contacts(law, decisions)
         decide_penetration(scene, decisions)
         decide_recording(recorded, decisions)
-        return decisions.finish()
+        return decisions.finish(ill_posed(scene, law))
 
     def load(self, scene: Scene, plan: Plan) -> Pipeline:
         return EventDriven(scene, plan, self.tolerance)

@@ -16,6 +16,7 @@ from harness.backends.poses import near_radii
 from harness.broadphase.all_pairs import AllPairs
 from harness.broadphase.ignored import asked_about
 from harness.broadphase.pairs import BroadPhase
+from harness.methods.ill_posed import ill_posed
 from harness.methods.impact_times import ImpactFinder, KernelImpacts
 from harness.methods.method import Method, Pipeline, WarmUp
 from harness.methods.near_pairs import KernelNearPairs, NearFinder
@@ -116,7 +117,7 @@ class SteppedMethod(Method):
             why = f"query {self.name.query} does not ask how deep bodies are in each other"
             decisions.take("penetration", False, why, fixed=why)
         decide_recording(recorded, decisions)
-        return decisions.finish(self.warnings(scene))
+        return decisions.finish((*self.warnings(scene), *ill_posed(scene, law)))
 
     def load(self, scene: Scene, plan: Plan) -> Pipeline:
         pairs = plan.keeps("pairs")

@@ -10,7 +10,6 @@ import numpy as np
 
 from harness.arrays import Floats
 from harness.broadphase.hierarchical_grid import HierarchicalGrid
-from harness.measure.conservation import energy
 from harness.scene.scene import Scene
 from harness.vocabulary import Response
 
@@ -76,7 +75,10 @@ def fastest(scene: Scene, response: Response) -> Floats:
     """(n,) m/s: a speed that each body never exceeds."""
     bodies = scene.bodies
     if response == "elastic":
-        bound: Floats = np.sqrt(2.0 * energy(bodies.velocities, bodies.masses) / bodies.masses)
+        # not by the kernel that measures the energy of a run: a plan would wait for numba, and this is only a bound
+        with np.errstate(over="ignore"):
+            twice_energy = np.sum(bodies.masses * np.sum(bodies.velocities**2, axis=1))
+            bound: Floats = np.sqrt(twice_energy / bodies.masses)
     else:
         bound = np.linalg.norm(bodies.velocities, axis=1)
     return bound * (1.0 + SLACK)

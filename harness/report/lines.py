@@ -8,6 +8,8 @@ from harness.report.quantity import Scale, number
 
 # Below these ranges a logarithmic axis has no two round numbers on it.
 _LOG_X, _LOG_Y = 4.0, 2.5
+# Beyond this one most values of x stand at the left edge of an axis that is not.
+_WIDE_X = 30.0
 
 
 def spans_logarithms(panel: Panel) -> bool:
@@ -17,6 +19,12 @@ def spans_logarithms(panel: Panel) -> bool:
     if not xs or min(xs) <= 0 or min(ys) <= 0:
         return False
     return max(xs) / min(xs) >= _LOG_X and max(ys) / min(ys) >= _LOG_Y
+
+
+def spans_wide(panel: Panel) -> bool:
+    """Whether x is positive and spans so much that its axis is logarithmic whatever y does."""
+    xs = [x for line in panel.lines for x in line.x]
+    return bool(xs) and min(xs) > 0 and max(xs) / min(xs) >= _WIDE_X
 
 
 def axis_title(metric: str, unit: Scale) -> str:

@@ -58,6 +58,7 @@ def build_scene(point: Point, files: SceneFiles, memory: int | None = None) -> S
         box_of(point, files),
         mesh_of=mesh_of,
         ignored=_ignored(point),
+        apart=point.scene.bodies is None and point.scene.overlap == "reject",
     )
 
 

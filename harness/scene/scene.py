@@ -40,6 +40,7 @@ class Scene:
     mesh_of : (n,) int array, the number of each body's mesh; all have the first if it is left out
     ignored : (k, 2) int array, pairs i < j that are never asked about, sorted, each once
     poses : of the centres, where they were recorded; the box is then only known to hold them
+    apart : whether the bodies were placed so that no two bounding spheres overlap
     """
 
     shape: Shape
@@ -50,6 +51,7 @@ class Scene:
     mesh_of: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
     ignored: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
     poses: RecordedPoses | None = None
+    apart: bool = False
 
     def __post_init__(self) -> None:
         if not self.meshes and self.shape != "sphere":

@@ -8,6 +8,7 @@ import pytest
 
 import harness
 from harness.cli.main import main
+from harness.runner import scene_of_point
 from harness.store.recording import recording_of
 
 EXPERIMENT = """
@@ -133,6 +134,24 @@ def test_plan_says_what_is_left_out_and_warns_of_approximations(small, capsys):
     stages = {stage["name"]: stage for stage in runs[0]["stages"]}
     assert not stages["orientations"]["kept"]
     assert "spin" in stages["orientations"]["why"]
+
+
+def test_plan_places_the_bodies_of_a_scene_once_for_all_methods(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "spheres.yaml").write_text(
+        "title: Spheres\nscene: {shape: sphere, count: 3, box: [6, 6, 6]}\nmotion: {duration: 1}\n"
+        "sweep: {count: [2, 3], algorithm: [grid, brute-force, predictive]}\n"
+    )
+    built, build = [], scene_of_point.build_scene
+    monkeypatch.setattr(
+        scene_of_point, "build_scene", lambda point, *more: built.append(point.scene.count) or build(point, *more)
+    )
+    assert main(["plan", "spheres.yaml", "--json"]) == 0
+    runs = json.loads(capsys.readouterr().out)["runs"]
+    assert built == [2, 3]
+    assert [(run["parameters"]["count"], run["parameters"]["algorithm"]) for run in runs] == [
+        (count, algorithm) for count in (2, 3) for algorithm in ("grid", "brute-force", "predictive")
+    ]
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from harness.report.drawing import palette
 from harness.report.drawing.exponents import Slope, draw_exponents
 from harness.report.drawing.panels import Line, Panel, draw_panels
+from harness.report.lines import spans_wide
 from harness.report.styles import style_of
 from harness.vocabulary import ALGORITHMS, MethodName
 
@@ -22,6 +23,13 @@ def panel(lines, **changes):
 def label_heights(svg, labels):
     found = {text: float(y) for y, text in re.findall(r'<text [^>]*?y="([-\d.]+)"[^>]*>([^<]*)</text>', svg)}
     return sorted(found[label] for label in labels)
+
+
+def drawn_line(svg):
+    """The points of the line of series 0, px."""
+    path = re.search(r'<path d="M([\d. L]+)" fill="none" stroke="#0102f0" stroke-width="2"', svg)[1]
+    points = [tuple(map(float, point.split())) for point in path.split("L")]
+    return [x for x, _ in points], [y for _, y in points]
 
 
 @pytest.mark.slow
@@ -56,6 +64,19 @@ def test_labels_that_fit_stand_at_their_lines():
     lines = [Line("low", 0, (1.0, 2.0), (1.0, 1.0)), Line("high", 1, (1.0, 2.0), (9.0, 9.0))]
     low, high = label_heights(draw_panels([panel(lines)], "wide", "x"), ["high", "low"])
     assert high - low > 100
+
+
+def test_an_axis_below_is_logarithmic_where_x_spans_much_and_y_little():
+    """The values of x stand at even steps, those of y where they did."""
+    lines = [Line("a", 0, (1e3, 1e4, 1e5, 1e6), (16.0, 20.0, 22.0, 21.0))]
+    assert spans_wide(panel(lines))
+    assert not spans_wide(panel([Line("a", 0, (1.0, 20.0), (1.0, 2.0))]))
+    assert not spans_wide(panel([Line("a", 0, (0.0, 1e3), (1.0, 2.0))]))
+    evenly, even_y = drawn_line(draw_panels([panel(lines, logarithmic_x=True)], "wide", "x"))
+    crowded, y = drawn_line(draw_panels([panel(lines)], "wide", "x"))
+    assert np.allclose(np.diff(evenly), np.diff(evenly)[0], atol=0.1)
+    assert crowded[2] - crowded[0] < 0.2 * (crowded[3] - crowded[0])
+    assert even_y == y
 
 
 def test_the_same_drawing_has_the_same_bytes():

@@ -30,15 +30,16 @@ class PanelFrame:
     top: float
     x_range: tuple[float, float]
     y_range: tuple[float, float]
-    logarithmic: bool
+    logarithmic_x: bool
+    logarithmic_y: bool
 
     def x(self, value: float) -> float:
         """Place of a value of x, px."""
-        return self.left + _share(value, self.x_range, self.logarithmic) * (self.right - self.left)
+        return self.left + _share(value, self.x_range, self.logarithmic_x) * (self.right - self.left)
 
     def y(self, value: float) -> float:
         """Place of a value of y, px."""
-        return self.bottom + _share(value, self.y_range, self.logarithmic) * (self.top - self.bottom)
+        return self.bottom + _share(value, self.y_range, self.logarithmic_y) * (self.top - self.bottom)
 
 
 def x_ticks(canvas: Canvas, frame: PanelFrame, ticks: Sequence[tuple[float, str]]) -> None:
@@ -56,7 +57,7 @@ def x_ticks(canvas: Canvas, frame: PanelFrame, ticks: Sequence[tuple[float, str]
 
 def y_ticks(canvas: Canvas, frame: PanelFrame, most: int) -> None:
     """Lines at round numbers of y, no more than so many, with their texts to the left of the frame."""
-    ticks = round_numbers(frame.y_range, frame.logarithmic, most)
+    ticks = round_numbers(frame.y_range, frame.logarithmic_y, most)
     places = [frame.y(value) for value in ticks]
     canvas.line(
         [value for _ in places for value in (frame.left, frame.right, math.nan)],

@@ -31,7 +31,7 @@ def draw_exponents(exponents: Sequence[Slope], leaf: str, form: Form, name: str)
     lows = [row.low if math.isfinite(row.low) else row.value for row in exponents]
     highs = [row.high if math.isfinite(row.high) else row.value for row in exponents]
     x_range = (min(0.0, *lows) - 0.12, max(1.0, *highs) + 0.18)
-    frame = PanelFrame(left, 50.0, width - 18, height - 30, x_range, (0.6 - len(exponents), 0.6), False)
+    frame = PanelFrame(left, 50.0, width - 18, height - 30, x_range, (0.6 - len(exponents), 0.6), False, False)
     canvas = Canvas(width, height, FONT)
     ticks = even_numbers(*x_range, 5 if form == "narrow" else 7, (1, 2, 5))
     x_ticks(canvas, frame, [(tick, tick_text(tick)) for tick in ticks])

@@ -55,6 +55,8 @@ class Line:
 class Panel:
     """One pair of axes. With `categories`, x counts them from 0.
 
+    With `logarithmic` both axes are, with `logarithmic_x` at least that of x.
+
     `front` are the corners (x, y) of a staircase behind the lines: what no point beats in both x and y. With `rounded`,
     the ticks of x are round numbers, not the measured ones.
     """
@@ -65,6 +67,7 @@ class Panel:
     lines: tuple[Line, ...]
     categories: tuple[str, ...] = ()
     logarithmic: bool = False
+    logarithmic_x: bool = False
     x_text: Callable[[float], str] = number
     front: tuple[tuple[float, float], ...] = ()
     rounded: bool = False
@@ -105,6 +108,7 @@ def _frame(
         corner[1] + size[1] - top,
         _x_range(panel),
         _y_range(panel),
+        panel.logarithmic or panel.logarithmic_x,
         panel.logarithmic,
     )
 
@@ -189,7 +193,7 @@ def _x_range(panel: Panel) -> tuple[float, float]:
         return -0.5, len(panel.categories) - 0.5
     xs = [value for line in panel.lines for value in (*line.x, *chain(*line.spans))] or [0.0, 1.0]
     low, high = min(xs), max(xs)
-    if panel.logarithmic:
+    if panel.logarithmic or panel.logarithmic_x:
         factor = (high / low) ** 0.04 if high > low else 2.0
         return low / factor, high * factor
     margin = 0.04 * (high - low) or abs(high) / 2 or 1.0
@@ -216,7 +220,7 @@ def _x_texts(panel: Panel, frame: PanelFrame, form: Form) -> list[tuple[float, s
         return [(float(place), shorten(text, letters * step - 1)) for place, text in named if place % step == 0]
     if panel.rounded:
         letters = int((frame.right - frame.left) / (9 * character))
-        return [(value, tick_text(value)) for value in round_numbers(frame.x_range, panel.logarithmic, letters)]
+        return [(value, tick_text(value)) for value in round_numbers(frame.x_range, frame.logarithmic_x, letters)]
     kept: list[tuple[float, str]] = []
     edge = -math.inf
     for value in sorted({value for line in panel.lines for value in line.x}):

@@ -11,7 +11,7 @@ from dataclasses import replace
 from harness.report.drawing.panels import Line, Panel, draw_panels
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure, FigureSource, Key
-from harness.report.lines import axis_title, in_words, median_text, spans_logarithms
+from harness.report.lines import axis_title, in_words, median_text, spans_logarithms, spans_wide
 from harness.report.quantity import Scale, leaf_text, scale
 from harness.report.series import Arrangement, Series
 from harness.report.words import capital, is_noisy, leaf_label, leaf_title, metric_title, metric_unit
@@ -48,7 +48,8 @@ def _figure(arrangement: Arrangement, metrics: tuple[str, ...]) -> Figure:
         )  # fmt: skip
         panels.append(_panel(arrangement, name, metrics, lines, unit))
     logarithmic = all(spans_logarithms(panel) for panel in panels) and not panels[0].categories
-    panels = [replace(panel, logarithmic=logarithmic) for panel in panels]
+    wide = all(map(spans_wide, panels)) and not panels[0].categories
+    panels = [replace(panel, logarithmic=logarithmic, logarithmic_x=wide) for panel in panels]
     title = capital(" and ".join(map(metric_title, metrics)))
     assert arrangement.x is not None
     over = leaf_title(arrangement.x)
@@ -59,7 +60,8 @@ def _figure(arrangement: Arrangement, metrics: tuple[str, ...]) -> Figure:
         "-".join(metrics),
         f"{title} against {over}",
         f"{kind} of {title.lower()} against {over}. {' '.join(map(in_words, panels))}",
-        _caption(arrangement, metrics, logarithmic) + (f" {left} more panels are in the table only." if left else ""),
+        _caption(arrangement, metrics, logarithmic, wide)
+        + (f" {left} more panels are in the table only." if left else ""),
         lambda form, name: draw_panels(panels if form != "card" else panels[:1], form, name),
         tuple(keys.values()),
         labelled=True,
@@ -102,7 +104,7 @@ def _reported(series: Series, metrics: Sequence[str]) -> bool:
     return any(point.summary(metric) for point in series.points for metric in metrics)
 
 
-def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool) -> str:
+def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool, wide: bool) -> str:
     sentences = []
     shape = "band" if arrangement.numeric else "bar"
     if any(map(is_noisy, metrics)):
@@ -118,6 +120,8 @@ def _caption(arrangement: Arrangement, metrics: Sequence[str], logarithmic: bool
         sentences.append("Exact: the same in every repeat.")
     if logarithmic:
         sentences.append("Both axes are logarithmic: a straight line is a power law, and its slope the exponent.")
+    elif wide:
+        sentences.append("The axis below is logarithmic.")
     elif not arrangement.numeric:
         sentences.append("The dotted line only guides the eye.")
     return " ".join(sentences)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from harness.report.drawing.panels import Line, Panel, draw_panels
 from harness.report.experiment import ExperimentPage
 from harness.report.figure import Figure, FigureSource, Key
-from harness.report.lines import axis_title, in_words, spans_logarithms
+from harness.report.lines import axis_title, in_words, spans_logarithms, spans_wide
 from harness.report.published import metrics_of
 from harness.report.quantity import Scale, leaf_text, scale
 from harness.report.words import leaf_title, metric_title, metric_unit
@@ -36,7 +36,9 @@ def _figures(page: ExperimentPage) -> list[Figure]:
         lines = [_plain(name, series[name], values, unit) for name, values in ours.items()]
         lines.append(replace(_plain("published", 0, theirs, unit), foreign=True))
         panel = Panel(metric_title(metric), f"{leaf_title(leaf)} ({leaf})", axis_title(metric, unit), tuple(lines))
-        panels.append(replace(panel, x_text=leaf_text, logarithmic=spans_logarithms(panel)))
+        panels.append(
+            replace(panel, x_text=leaf_text, logarithmic=spans_logarithms(panel), logarithmic_x=spans_wide(panel))
+        )
     opening = f"Each panel compares the published numbers of {source} (dashed) with ours, over {leaf_title(leaf)}."
     keys = (*(Key(name, style) for name, style in series.items()), Key("published", 0, foreign=True))
     figure = Figure(
