@@ -89,7 +89,9 @@ def _keep(path: Path, content: bytes) -> None:
 @cache
 def _remove_unused(home: Path) -> None:
     """Once in a process, at the first file that it keeps there."""
-    for old in home.glob("*"):
-        with suppress(OSError):
-            if old.stat().st_mtime < time() - UNUSED:
-                old.unlink()
+    oldest = time() - UNUSED
+    with suppress(OSError), os.scandir(home) as found:  # of 10 000 files, paths of `pathlib` take twice as long
+        for old in found:
+            with suppress(OSError):
+                if old.stat().st_mtime < oldest:
+                    os.unlink(old)

@@ -123,6 +123,13 @@ def summary(values: ArrayLike) -> Summary:
     )
 
 
+def median(values: ArrayLike) -> float:
+    """The median alone, of those that are not NaN; NaN of none."""
+    given = np.asarray(values, dtype=float).ravel()
+    counted = np.sort(given[~np.isnan(given)])
+    return _middle(counted) if counted.size else math.nan
+
+
 def paired_ratio(a: ArrayLike, b: ArrayLike) -> Summary:
     """The ratio a/b of repeats that belong together by their place: what they share of the noise cancels.
 
@@ -183,7 +190,7 @@ def fit_exponent(samples: Mapping[float, Sequence[float]]) -> Exponent:
     >>> f"{growth.value:.2f} [{growth.low:.2f}, {growth.high:.2f}]", growth.enough
     ('2.04 [2.00, 2.08]', True)
     """
-    medians = {float(x): _median(values) for x, values in samples.items()}
+    medians = {float(x): median(values) for x, values in samples.items()}
     medians = {x: y for x, y in sorted(medians.items()) if math.isfinite(x) and math.isfinite(y)}
     usable = {x: y for x, y in medians.items() if x > 0.0 and y > 0.0}
     dropped = tuple(x for x in medians if x not in usable)
@@ -302,11 +309,6 @@ def interval_place(n: int) -> tuple[int, float]:
     enough = next(k for k in range(n + 1) if special.bdtr(k, n, 0.5) >= (1.0 - CONFIDENCE) / 2.0)
     place = max(0, enough - 1)
     return place, float(1.0 - 2.0 * special.bdtr(place, n, 0.5))
-
-
-def _median(values: Sequence[float]) -> float:
-    counted = np.sort(np.array([value for value in values if not math.isnan(value)], dtype=float))
-    return _middle(counted) if counted.size else math.nan
 
 
 def _middle(ascending: NDArray[np.float64]) -> float:

@@ -19,7 +19,7 @@ ROUNDING = 1e-9
 # Bodies placed apart can have no room from here on: a cubic lattice has .52.
 DENSE = 0.45
 # Up to so many bodies every pair is tested, without the kernel of a grid, which takes longer to load.
-FEW = 300
+FEW = 1000
 
 
 def ill_posed(scene: Scene, law: MotionLaw) -> tuple[str, ...]:

@@ -6,14 +6,13 @@ Triangles are painted from the farthest to the nearest, lit by one light, at twi
 from __future__ import annotations
 
 import io
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 from fast_simplification import simplify
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
-from scipy.spatial.transform import Rotation
-from trimesh.creation import icosphere
 
 from harness.arrays import Floats
 from harness.replay.document import start_positions, view_box
@@ -31,7 +30,8 @@ _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1
 
 def still(recording: Recording) -> bytes:
     """A PNG with a transparent background, the same bytes for the same recording."""
-    image = Image.new("RGBA", (WIDTH * _OVERSAMPLING, HEIGHT * _OVERSAMPLING), (0, 0, 0, 0))
+    # of colours times their opacity, as their means need to be: what is painted is opaque, and the rest is all 0
+    image = Image.new("RGBa", (WIDTH * _OVERSAMPLING, HEIGHT * _OVERSAMPLING), (0, 0, 0, 0))
     draw = ImageDraw.Draw(image)
     middle, half = view_box(recording)
     eye, axes = _camera(half)
@@ -41,17 +41,10 @@ def still(recording: Recording) -> bytes:
     if len(recording):
         _draw_bodies(draw, recording, eye, axes)
     buffer = io.BytesIO()
-    small = _scaled_down(image)
+    small = image.reduce(_OVERSAMPLING).convert("RGBA")
     # at the usual level of compression: three more bytes in a hundred than at the highest, for a third of its time
     small.quantize(_COLOURS, method=Image.Quantize.FASTOCTREE).save(buffer, format="PNG")
     return buffer.getvalue()
-
-
-def _scaled_down(image: Image.Image) -> Image.Image:
-    """At the size of the picture: the mean of each square of pixels."""
-    # all of it is opaque or black and transparent, so that colours need not be multiplied by their opacity first
-    painted = Image.frombuffer("RGBa", image.size, image.tobytes(), "raw", "RGBa", 0, 1)
-    return painted.reduce(_OVERSAMPLING).convert("RGBA")
 
 
 def _camera(half: Floats) -> tuple[Floats, Floats]:
@@ -106,7 +99,7 @@ def _draw_bodies(draw: ImageDraw.ImageDraw, recording: Recording, eye: Floats, a
 
 def _corners(recording: Recording) -> Floats:
     """(k, 3, 3) m: the triangles of all bodies."""
-    turns = Rotation.from_quat(recording.quaternions, scalar_first=True).as_matrix()
+    turns = _turns(recording.quaternions)
     places, found = start_positions(recording), []
     for number in range(max(1, len(recording.surfaces))):
         vertices, faces = _form(recording, recording.surfaces[number] if recording.surfaces else None)
@@ -121,10 +114,45 @@ def _form(recording: Recording, surface: RecordedMesh | None) -> tuple[Floats, N
     most = max(20, _MOST_TRIANGLES // len(recording))
     if surface is None:
         halvings = max(1, min(3, int(np.log(most / 20) / np.log(4))))
-        ball = icosphere(subdivisions=halvings, radius=0.5)
-        return np.asarray(ball.vertices), np.asarray(ball.faces)
+        return _ball(halvings)
     vertices, faces = surface.vertices, surface.faces
     if len(faces) <= most:
         return vertices, faces
     coarse, corners = simplify(vertices.copy(), faces.copy(), target_count=max(most, 60))  # it wants to write
     return np.asarray(coarse, np.float64), np.asarray(corners)
+
+
+def _turns(quaternions: Floats) -> Floats:
+    """(n, 3, 3), of quaternions w x y z; scipy's take a quarter of a second to import."""
+    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
+    rows = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def _ball(halvings: int) -> tuple[Floats, NDArray[Any]]:
+    """A sphere of diameter 1: an icosahedron whose sides are halved again and again, all corners on the sphere."""
+    golden = (1.0 + np.sqrt(5.0)) / 2.0
+    one, other = np.array([(a, b) for a in (-1.0, 1.0) for b in (-golden, golden)]).T
+    corners = np.concatenate([np.roll(np.column_stack([np.zeros(4), one, other]), k, axis=1) for k in range(3)])
+    apart = np.linalg.norm(corners[:, None] - corners, axis=2)
+    joined = (apart > 1.0) & (apart < 2.5)  # the sides are 2 long
+    faces = np.array(
+        [
+            (a, b, c) if np.linalg.det(corners[[a, b, c]]) > 0.0 else (a, c, b)
+            for a, b, c in combinations(range(12), 3)
+            if joined[a, b] and joined[b, c] and joined[a, c]
+        ]
+    )
+    corners /= np.linalg.norm(corners, axis=1, keepdims=True)
+    for _ in range(halvings):
+        sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
+        unique, middles = np.unique(sides.reshape(-1, 2), axis=0, return_inverse=True)
+        (a, b, c), (ab, bc, ca) = faces.T, middles.reshape(-1, 3).T + len(corners)
+        corners = np.concatenate([corners, corners[unique].mean(axis=1)])
+        corners /= np.linalg.norm(corners, axis=1, keepdims=True)
+        faces = np.column_stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]).reshape(-1, 3)
+    return 0.5 * corners, faces
