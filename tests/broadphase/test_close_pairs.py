@@ -128,9 +128,9 @@ def test_two_thousand_bodies_in_one_place_are_two_million_pairs(method):
 @pytest.mark.parametrize("ratio", slow_beyond([4.0, 1.0]))
 def test_more_cells_than_the_smallest_buckets_hold_are_sorted_as_well(ratio):
     rng = np.random.default_rng(23)
-    radii = rng.choice([0.5, 0.5 / ratio], 150_000)
-    half = np.full(3, 60.0)
-    positions = rng.uniform(-1, 1, (150_000, 3)) * half
+    radii = rng.choice([0.5, 0.5 / ratio], 300_000)
+    half = np.full(3, 90.0)
+    positions = rng.uniform(-1, 1, (300_000, 3)) * half
     grid = make("hierarchical grid", radii, half)
     pairs = grid.close_pairs(positions)
     assert grid.cell_count > MOST_BUCKETS << SMALLEST_BUCKET

@@ -18,6 +18,14 @@ def levels_of(grid):
     return [int(count) for count in levels["end"] - levels["begin"] if count]
 
 
+def assert_levels_are_of_their_bodies(grid):
+    levels, radii = grid._cells.levels, grid._cells.columns[3]
+    assert np.all(levels["cells"] <= levels["budget"])
+    for level in levels[levels["end"] > levels["begin"]]:
+        of_bodies = radii[level["begin"] : level["end"]]
+        assert (level["least"], level["reach"]) == (of_bodies.min(), of_bodies.max())
+
+
 @pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
@@ -47,6 +55,7 @@ def test_all_pairs_are_found_whichever_classes_share_a_level(seed, sizes, ratio,
             positions[some] = np.round(positions[some] / step) * step
             positions[: count // 20] = positions[-(count // 20) :]
         assert np.array_equal(grid.close_pairs(positions), touching_pairs(positions, radii))
+        assert_levels_are_of_their_bodies(grid)
 
 
 def test_classes_share_a_level_where_bodies_are_sparse_and_not_where_small_ones_would_crowd_its_cells():
@@ -85,3 +94,12 @@ def test_few_bodies_have_a_level_for_each_class():
     grid = HierarchicalGrid(radii, box)
     grid.close_pairs(positions)
     assert len(levels_of(grid)) == 5
+
+
+def test_a_level_that_was_not_shared_keeps_to_its_own_number_of_cells():
+    radii = np.where(np.arange(610) < 10, 0.5, 0.02)
+    positions, box = crowd(radii, 0.002)  # so sparse that both levels have all the cells that they may have
+    grid = HierarchicalGrid(radii, box)
+    grid.close_pairs(positions)
+    assert levels_of(grid) == [10, 600]
+    assert_levels_are_of_their_bodies(grid)
