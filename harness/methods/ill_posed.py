@@ -23,8 +23,8 @@ FEW = 1000
 
 
 def ill_posed(scene: Scene, law: MotionLaw) -> tuple[str, ...]:
-    """A sentence on each way in which a motion is ill-posed, none where nothing answers a hit."""
-    if law.response == "none" or scene.poses is not None or not len(scene.bodies):
+    """A sentence on each way in which a motion is ill-posed, none where nothing moves or nothing answers a hit."""
+    if law.response == "none" or scene.poses is not None or not scene.bodies.velocities.any():
         return ()
     sphere = scene.shape == "sphere"
     pairs = np.empty((0, 2), np.int64)
