@@ -133,6 +133,9 @@ EXACT_FRAMES = f"{OWN_BACKEND}/grid"
 LIBRARY_IMPACTS = f"{OWN_BACKEND}/native"
 """The pipeline of a library that is asked for times of impact where none is named."""
 
+ILL_POSED = "ill-posed: which hit comes when, how many there are and what they cost is each method's own"
+"""What such a motion is, in plans and on pages."""
+
 METHOD_LEAVES = ("backend", "algorithm", "shape", "query", "tolerance", "stages", "dt")
 """Leaves that say how a question is answered; an experiment that varies one of them compares methods."""
 

@@ -12,8 +12,8 @@ from harness.broadphase.hierarchical_grid import HierarchicalGrid
 from harness.broadphase.ignored import asked_about
 from harness.motion.law import MotionLaw
 from harness.scene.scene import Scene
+from harness.vocabulary import ILL_POSED
 
-ILL_POSED = "ill-posed: which hit comes when, how many there are and what they cost is each method's own"
 # Of the distance of two centres that touch: what is nearer overlaps, what is farther has room; placing rounds by less.
 ROUNDING = 1e-9
 # Bodies placed apart can have no room from here on: a cubic lattice has .52.

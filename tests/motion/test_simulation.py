@@ -11,6 +11,7 @@ from harness.errors import InputError
 from harness.motion.predictive import grids
 from harness.motion.predictive.codes import Event
 from harness.motion.predictive.simulation import Simulation
+from harness.motion.predictive.state import CAPACITY
 from harness.scene.random_packing import add_at_random
 
 
@@ -296,6 +297,25 @@ def test_more_spheres_in_one_place_than_a_list_holds():
     simulation.advance(np.inf, max_events=30_000)
     assert simulation.search == "cells"
     assert abs(simulation.virial_residual) <= 1e-12
+
+
+def test_a_sphere_among_more_than_its_list_holds_though_no_cell_is_full():
+    turn = np.arange(48) * np.pi * (3.0 - np.sqrt(5.0))
+    height = (2.0 * np.arange(48) + 1.0) / 48.0 - 1.0
+    around = np.column_stack([np.sqrt(1 - height**2) * np.cos(turn), np.sqrt(1 - height**2) * np.sin(turn), height])
+    positions = np.vstack([np.zeros(3), 0.75 * around])
+    velocities = np.random.default_rng(9).normal(size=(49, 3))
+    flown = []
+    for search in ("lists", "cells"):
+        radii = [0.5] + [0.17] * 48
+        simulation = Simulation(positions, velocities, radii, [1.0] * 49, [1.5] * 3, "elastic", search=search)
+        if search == "lists":
+            assert simulation.search == "lists"
+            assert simulation._world.lists.cells["count"].max() < CAPACITY
+        simulation.advance(np.inf, max_events=300)
+        assert simulation.search == "cells"
+        flown.append(simulation.positions)
+    assert flown[0] == pytest.approx(flown[1], abs=1e-9)
 
 
 @pytest.mark.slow

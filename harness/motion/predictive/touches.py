@@ -1,9 +1,8 @@
 """Which of its candidates a sphere touches first, four of them at once.
 
 The rows of four spheres are read into columns, their times are solved together, and the earliest of each column is
-carried along in a register: no loop over a list of spheres makes LLVM write such code. Each operation
-is rounded as in the other steps of the event loop, so that each time is that of
-`harness.narrowphase.spheres.time_to_touch`, to the bit.
+carried along in a register: no loop over a list of spheres makes LLVM write such code. Each operation is rounded as in
+the other steps of the event loop, so that each time is that of `harness.narrowphase.spheres.time_to_touch`, to the bit.
 """
 
 from __future__ import annotations

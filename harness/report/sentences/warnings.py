@@ -14,7 +14,7 @@ from harness.report.quantity import number, plural
 from harness.report.series import Arrangement
 from harness.report.words import capital, metric_title
 from harness.store.records import ExperimentRecord
-from harness.vocabulary import MethodName
+from harness.vocabulary import ILL_POSED, MethodName
 
 _EXACT = tuple(name for name, metric in METRICS.items() if metric.exact)
 # Of several counts that change, these are told first.
@@ -82,10 +82,9 @@ def _of_flights(points: Sequence[MeasuredPoint]) -> Iterator[Markup]:
         most = max(point.values("stalled_events").max() for point in stalled)
         yield Markup(
             "<strong>Bodies had to wait</strong> in {}, up to {} times: too many events came in one burst. So it is "
-            "where bodies begin inside one another or have no room, and such a motion is ill-posed: which hit "
-            "comes when, how many there are and what they cost is each method's own. So it is too where the search "
-            "for a contact is given up, and taken up again a moment later."
-        ).format(plural(len(stalled), "point"), number(most))
+            "where bodies begin inside one another or have no room, and such a motion is {}. So it is too where the "
+            "search for a contact is given up, and taken up again a moment later."
+        ).format(plural(len(stalled), "point"), number(most), ILL_POSED)
 
 
 def _of_measuring(record: ExperimentRecord, arrangement: Arrangement) -> Iterator[Markup]:
